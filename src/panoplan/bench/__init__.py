@@ -1,0 +1,1 @@
+"""What `panoplan bench` runs."""

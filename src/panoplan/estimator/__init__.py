@@ -1,0 +1,1 @@
+"""The only place with time: state, step, streaming front."""

@@ -1,0 +1,1 @@
+"""One module an on-disk format, read and write, no discovery."""

@@ -1,0 +1,1 @@
+"""Scores of a plan against the truth."""

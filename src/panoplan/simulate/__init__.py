@@ -1,0 +1,1 @@
+"""Buildings, walks, exact views and calibrated noise."""

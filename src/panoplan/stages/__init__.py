@@ -1,0 +1,1 @@
+"""The method of the paper: one module a subsection, none imports another."""

@@ -1,0 +1,1 @@
+"""Room shape by iterative shortest path (iSPA)."""

@@ -1,0 +1,1 @@
+"""The nouns of the method: frozen values, validated when made."""

@@ -1,0 +1,1 @@
+"""Live views: they consume events only."""
