@@ -1,0 +1,410 @@
+"""Settings: one frozen dataclass a stage, and the presets.
+
+Each field's metadata says what it is, its unit, its range and what the paper prints for it
+("not in the paper" where it prints nothing; the reason is then part of the text).
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import types
+import typing
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from panoplan.errors import ConfigError
+
+NOT_PRINTED = "not in the paper"
+
+
+def _setting(
+    default: Any, doc: str, *, unit: str = "", low: float | None = None, high: float | None = None,
+    paper: object = NOT_PRINTED,
+) -> Any:
+    return field(
+        default=default,
+        metadata={"doc": doc, "unit": unit, "low": low, "high": high, "paper": paper},
+    )
+
+
+@dataclass(frozen=True)
+class RegistrationConfig:
+    """Layout boundary to points in the plan (Eq. 1-2)."""
+
+    min_depression_deg: float = _setting(
+        2.0,
+        "Columns whose boundary lies less than this below the level horizon are unknown: at 2° the "
+        "range is 29 camera heights and an error of one row of 512 changes it by a fifth.",
+        unit="deg", low=0.0, high=45.0,
+    )
+    height_from_pose: bool = _setting(
+        True,
+        "Camera height of a keyframe follows its pose, h_i = 1 + s (y_1 - y_i); otherwise h = 1.",
+        paper=False,
+    )
+
+
+@dataclass(frozen=True)
+class ScaleConfig:
+    """Relative scale by entropy minimisation (Eq. 3-4)."""
+
+    warmup: int | float | Literal["converged"] = _setting(
+        "converged",
+        "How long keyframes are collected before the scale is frozen: a count, a fraction of a walk "
+        "whose length is known (0-1], or until the estimate has settled.",
+        paper=0.2,
+    )
+    warmup_min: int = _setting(
+        12, "Fewest keyframes before the estimate may count as settled: one window and two more.",
+        low=2, high=10_000,
+    )
+    warmup_max: int = _setting(
+        120, "The scale is frozen after so many keyframes in any case, so that a stream starts.",
+        low=2, high=100_000,
+    )
+    settle_tolerance: float = _setting(
+        0.003, "Relative change of the estimate that counts as none.", low=0.0, high=1.0,
+    )
+    settle_count: int = _setting(
+        8, "Estimates in a row that must agree within `settle_tolerance`.", low=1, high=1000,
+    )
+    window: int = _setting(
+        10, "Keyframes a sliding window; it shrinks when there are fewer.", low=2, high=1000,
+        paper=10,
+    )
+    steps: tuple[float, ...] = _setting(
+        (0.5, 0.1, 0.01),
+        "Step sizes of the coarse-to-fine search, in units of `step_unit`.",
+        paper=(0.5, 0.1, 0.01),
+    )
+    step_unit: Literal["keyframe_step", "absolute"] = _setting(
+        "keyframe_step",
+        "What a step of the search is measured in: camera heights a median keyframe step, or "
+        "camera heights a trajectory unit (as printed; means nothing in arbitrary units).",
+        paper="absolute",
+    )
+    absolute_range: tuple[float, float] = _setting(
+        (0.1, 10.0),
+        "Range of s for `step_unit = absolute`; with `keyframe_step` the range follows the data.",
+    )
+    sub_step: bool = _setting(
+        True, "Goes on below the last step until a step is 0.2 % of s, then fits a parabola.",
+        paper=False,
+    )
+    cells_ch: tuple[float, ...] = _setting(
+        (0.02, 0.03, 0.05),
+        "Cell sizes of the histogram; entropies are averaged over them. Near the noise of a good "
+        "layout: wider cells cannot see a misalignment of a few centimetres.",
+        unit="camera heights", low=1e-3, high=1.0,
+    )
+    facings: int = _setting(
+        4,
+        "Directions into which wall points are sorted by the side the wall is seen from, so that "
+        "the two faces of one wall never share a cell; 1 turns this off. Without it a scale a few "
+        "per cent low, which lays both faces on one another, has the lower entropy.",
+        low=1, high=16, paper=1,
+    )
+    control: bool = _setting(
+        True,
+        "Subtracts the entropy at -s, where the layouts are as crowded but cannot agree. Otherwise "
+        "crowding alone lowers the entropy, and on long walks the smallest s of all may win.",
+        paper=False,
+    )
+    smooth: bool = _setting(
+        True, "Each point is shared among the four nearest cells, so that the curve is smooth.",
+        paper=False,
+    )
+    max_range_ch: float = _setting(
+        4.0, "Farther points take no part: their range error exceeds every cell.",
+        unit="camera heights", low=0.5, high=100.0, paper="unlimited",
+    )
+    columns: int = _setting(
+        512, "Columns of a layout that take part; neighbours are correlated over tens of columns.",
+        low=16, high=16384, paper="all",
+    )
+
+
+@dataclass(frozen=True)
+class RoomsConfig:
+    """Room identification (Eq. 5-6, Algorithm 1)."""
+
+    clip_radius_ch: float = _setting(
+        3.0,
+        "Clipping radius r of Eq. 6: layouts are good to a tenth of the range up to about there.",
+        unit="camera heights", low=0.2, high=100.0,
+    )
+    cell_ch: float = _setting(
+        0.05, "Cell of the room density maps: 7 to 8 cm at eye level.",
+        unit="camera heights", low=0.005, high=1.0,
+    )
+    normalise: Literal["running_max", "max", "coverage"] = _setting(
+        "coverage",
+        "How a room's density is normalised: by its maximum at each update (Algorithm 1 as printed; "
+        "old evidence halves every time), once by the maximum, or by the views that could see the "
+        "cell.",
+        paper="running_max",
+    )
+    beyond_weight: float = _setting(
+        0.1,
+        "Weight of a view's evidence against a cell that lies farther than `wall_band_ch` beyond "
+        "its boundary: hidden, hence little against.",
+        low=0.0, high=1.0,
+    )
+    wall_band_ch: float = _setting(
+        0.2, "How far beyond its boundary a view speaks against a cell with full weight.",
+        unit="camera heights", low=0.0, high=10.0,
+    )
+    threshold: float = _setting(
+        0.5, "Density from which a cell belongs to a room.", low=0.0, high=1.0, paper=0.5,
+    )
+    membership: Literal["camera", "overlap"] = _setting(
+        "overlap",
+        "What makes a keyframe a room's: its camera's density in the room's map, or the overlap of "
+        "its clipped layout with the room's mask, over the smaller of the two. The latter also "
+        "holds for a camera in a doorway and is not led astray by one leaking view.",
+        paper="camera",
+    )
+    overlap_min: float = _setting(
+        0.5, "Overlap from which a keyframe belongs to a known room.", low=0.0, high=1.0,
+    )
+    overlap_stay: float = _setting(
+        0.4, "The same for the room that the camera was last in.", low=0.0, high=1.0,
+    )
+    merge_overlap: float = _setting(
+        0.6,
+        "Two rooms whose masks overlap by more than this share of the smaller one are joined; "
+        "1 joins none.",
+        low=0.0, high=1.0, paper=1.0,
+    )
+    leave_after: int = _setting(
+        2, "Keyframes in a row assigned elsewhere after which a room counts as left.",
+        low=1, high=100, paper=1,
+    )
+
+
+@dataclass(frozen=True)
+class PlanesConfig:
+    """Wall pieces and their planes."""
+
+    max_residual_ch: float = _setting(
+        0.03, "Largest distance of an inlier from its plane.",
+        unit="camera heights", low=1e-4, high=1.0, paper=0.03,
+    )
+    min_inlier_ratio: float = _setting(
+        0.9, "Pieces with a smaller share of inliers are rejected.", low=0.0, high=1.0, paper=0.9,
+    )
+    iterations: int = _setting(
+        50, "RANSAC iterations a piece: at the inlier ratio asked for, the chance of never drawing "
+        "two inliers is below 1e-30.", low=1, high=10_000,
+    )
+    min_columns: int = _setting(
+        6, "Pieces of fewer columns (of 1024; in proportion otherwise) are rejected.",
+        low=2, high=1000,
+    )
+    max_range_ch: float = _setting(
+        6.0, "Points farther than this are not wall evidence: one degree is 0.6 camera heights there.",
+        unit="camera heights", low=0.5, high=100.0, paper="unlimited",
+    )
+    resplit: bool = _setting(
+        True,
+        "A piece without a plane is split where it bends most and tried again: a third of the "
+        "corners of a real layout network are missing.",
+        paper=False,
+    )
+
+
+@dataclass(frozen=True)
+class OrientationConfig:
+    """Bayesian filter of wall directions (Eq. 7)."""
+
+    sigma0_deg: float = _setting(
+        4.0, "Noise of a wall direction next to the camera.", unit="deg", low=0.01, high=180.0,
+    )
+    sigma_per_ch_deg: float = _setting(
+        4.0, "Growth of that noise with the distance of the wall (lambda).",
+        unit="deg per camera height", low=0.0, high=180.0,
+    )
+    gate_deg: float = _setting(
+        60.0, "An observation farther than this from every direction starts a new one.",
+        unit="deg", low=0.0, high=90.0, paper=60.0,
+    )
+    initial_sigma_deg: float = _setting(
+        360.0, "Standard deviation with which a direction starts.",
+        unit="deg", low=0.01, high=3600.0, paper=360.0,
+    )
+    final_sigma_deg: float = _setting(
+        18.0, "Directions less certain than this are dropped at the end; the best-supported is "
+        "kept and flagged when none is left.", unit="deg", low=0.01, high=3600.0, paper=18.0,
+    )
+
+
+@dataclass(frozen=True)
+class ShapeConfig:
+    """Room shape by iterative shortest path (Eq. 8-11)."""
+
+    grids: tuple[int, ...] = _setting(
+        (64, 96, 96), "Cells along the longer side of the room's box, one number a round.",
+        paper=(64, 96, 96),
+    )
+    fixed_cell_ch: float = _setting(
+        0.0, "Where above zero, the cell of every round instead of `grids` (first row of Table III).",
+        unit="camera heights", low=0.0, high=1.0, paper=0.0,
+    )
+    limit_edges: bool = _setting(
+        True, "Whether the first round limits the length of edges.", paper=True,
+    )
+    max_edge_cells: float = _setting(
+        15.0, "Longest edge of the first round.", unit="cells", low=2.0, high=1000.0,
+    )
+    band_in_cells: float = _setting(
+        2.0, "Corner candidates lie at most so far inside the mask.",
+        unit="cells", low=0.0, high=100.0,
+    )
+    band_out_cells: float = _setting(
+        3.0, "Corner candidates lie at most so far outside the mask.",
+        unit="cells", low=0.5, high=100.0,
+    )
+    refine_cells: float = _setting(
+        2.5, "Later rounds look for corners at most so far from earlier ones.",
+        unit="cells", low=0.5, high=100.0,
+    )
+    wall_sigma_ch: float = _setting(
+        0.03, "Width of a wall in the evidence map: the tolerance of L_plane.",
+        unit="camera heights", low=1e-3, high=1.0,
+    )
+    weight_orientation: float = _setting(
+        0.6, "Cost of a radian between an edge and the nearest wall direction (lambda_ori).",
+        low=0.0, high=1e4,
+    )
+    weight_plane: float = _setting(
+        1.0, "Cost of a camera height of edge off every wall (lambda_plane).", low=0.0, high=1e4,
+    )
+    weight_mask: float = _setting(
+        4.0, "Cost of a camera height of edge inside the mask (lambda_mask).", low=0.0, high=1e4,
+    )
+    weight_complexity: float = _setting(
+        0.12, "Cost of a corner (lambda_complex).", low=0.0, high=1e4,
+    )
+    min_area_ch2: float = _setting(
+        0.1, "Smaller masks have no shape.", unit="square camera heights", low=0.0, high=100.0,
+    )
+
+
+@dataclass(frozen=True)
+class Config:
+    """All settings of a run."""
+
+    preset: str = _setting("default", "The preset these settings started from.")
+    seed: int = _setting(0, "Seed of every random choice.", low=0, high=2**63 - 1)
+    registration: RegistrationConfig = field(default_factory=RegistrationConfig)
+    scale: ScaleConfig = field(default_factory=ScaleConfig)
+    rooms: RoomsConfig = field(default_factory=RoomsConfig)
+    planes: PlanesConfig = field(default_factory=PlanesConfig)
+    orientation: OrientationConfig = field(default_factory=OrientationConfig)
+    shape: ShapeConfig = field(default_factory=ShapeConfig)
+
+    def __post_init__(self) -> None:
+        """Checks every field's type and range."""
+        _check(self, "")
+
+
+_PRESETS: dict[str, dict[str, Any]] = {"default": {}, "sound": {}}
+
+
+def preset(name: str) -> Config:
+    """The settings of a preset: "paper", "released", "sound" or "default".
+
+    Raises:
+        ConfigError: no such preset.
+    """
+    if name not in _PRESETS:
+        raise ConfigError("preset", repr(name), " or ".join(sorted(_PRESETS)))
+    return override(Config(preset=name), _PRESETS[name])
+
+
+def override(config: Config, changes: Mapping[str, Any]) -> Config:
+    """`config` with nested changes.
+
+    Args:
+        config: where to start from.
+        changes: nested mappings of field names to values, as TOML has them.
+
+    Returns:
+        The new settings.
+
+    Raises:
+        ConfigError: an unknown key (with the nearest known one), a wrong type, or out of range.
+    """
+    return typing.cast(Config, _replace(config, changes, ""))
+
+
+def as_dict(config: Config) -> dict[str, Any]:
+    """The settings as nested plain values (tuples become lists), for TOML and JSON."""
+    return typing.cast(dict[str, Any], _plain(dataclasses.asdict(config)))
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, dict):
+        return {key: _plain(item) for key, item in value.items()}
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value
+
+
+def _replace(node: Any, changes: Mapping[str, Any], path: str) -> Any:
+    names = [f.name for f in dataclasses.fields(node)]
+    new = {}
+    for key, value in changes.items():
+        where = f"{path}{key}"
+        if key not in names:
+            near = difflib.get_close_matches(key, names, n=1)
+            raise ConfigError(
+                where, "an unknown setting",
+                f"{path}{near[0]}" if near else "one of " + ", ".join(names),
+            )
+        old = getattr(node, key)
+        if dataclasses.is_dataclass(old):
+            if not isinstance(value, Mapping):
+                raise ConfigError(where, repr(value), "a table of settings")
+            new[key] = _replace(old, value, where + ".")
+        else:
+            new[key] = tuple(value) if isinstance(value, list) else value
+    return dataclasses.replace(node, **new)
+
+
+def _check(node: Any, path: str) -> None:
+    hints = typing.get_type_hints(type(node))
+    for item in dataclasses.fields(node):
+        value, where = getattr(node, item.name), f"{path}{item.name}"
+        if dataclasses.is_dataclass(value):
+            _check(value, where + ".")
+            continue
+        if not _fits(value, hints[item.name]):
+            wanted = str(hints[item.name]).replace("typing.", "").removeprefix("<class '")
+            raise ConfigError(where, repr(value), wanted.removesuffix("'>"))
+        low, high = item.metadata.get("low"), item.metadata.get("high")
+        for number in value if isinstance(value, tuple) else (value,):
+            if isinstance(number, (int, float)) and not isinstance(number, bool) and not (
+                (low is None or number >= low) and (high is None or number <= high)
+            ):
+                raise ConfigError(where, repr(value), f"{low} to {high} {item.metadata['unit']}")
+
+
+def _fits(value: Any, hint: Any) -> bool:
+    origin = typing.get_origin(hint)
+    if origin in (types.UnionType, typing.Union):
+        return any(_fits(value, option) for option in typing.get_args(hint))
+    if origin is Literal:
+        return value in typing.get_args(hint)
+    if origin is tuple:
+        args = typing.get_args(hint)
+        if not isinstance(value, tuple) or not value:
+            return False
+        if args[-1] is Ellipsis:
+            return all(_fits(item, args[0]) for item in value)
+        return len(args) == len(value) and all(map(_fits, value, args))
+    if hint is float:
+        return isinstance(value, (int, float)) and not isinstance(value, bool) and value == value
+    if hint is int:
+        return isinstance(value, int) and not isinstance(value, bool)
+    return isinstance(value, hint)

@@ -1,0 +1,197 @@
+"""Relative scale recovery by entropy minimisation (Section III-C, Eq. 3-4)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from panoplan.config import ScaleConfig
+from panoplan.geometry.density import registered_entropy
+from panoplan.types.arrays import FloatArray, IntArray
+from panoplan.types.plan import ScaleEstimate
+from panoplan.types.view import CastLayout
+
+_SUB_STEP_RESOLUTION = 0.002
+_BEAM = 3
+
+
+@dataclass(frozen=True, eq=False)
+class _Points:
+    """What the entropy is computed from: N views of C columns."""
+
+    offsets: FloatArray
+    sectors: IntArray
+    sector_weights: FloatArray
+    positions: FloatArray
+    rises: FloatArray
+
+
+def median_step(views: Sequence[CastLayout]) -> float:
+    """Median distance between successive cameras in trajectory units; 0 for fewer than two."""
+    if len(views) < 2:
+        return 0.0
+    positions = np.array([view.position_su for view in views])
+    return float(np.median(np.linalg.norm(np.diff(positions, axis=0), axis=1)))
+
+
+def recover_scale(views: Sequence[CastLayout], config: ScaleConfig) -> ScaleEstimate:
+    """The scale at which the registered boundaries lie most sharply on one another.
+
+    Args:
+        views: at least two layouts of one walk, not all from one spot.
+        config: settings.
+
+    Returns:
+        The scale s in camera heights a trajectory unit with the objective's curve; `ch_per_su`
+        is None where no view has a known column or the camera did not move.
+
+    Source: Eq. 3-4.
+    """
+    points = _points(views, config)
+    unit = median_step(views) if config.step_unit == "keyframe_step" else 1.0
+    if unit <= 0.0 or not (points.sectors >= 0).any():
+        return ScaleEstimate(None, "unknown", converged=False, keyframes_used=len(views))
+    starts = _window_starts(len(views), config.window)
+    known: dict[float, float] = {}
+
+    def objective(candidates: FloatArray) -> FloatArray:
+        fresh = np.array([k for k in candidates if k not in known])
+        if fresh.size:
+            known.update(zip(fresh, _mean_entropy(points, starts, fresh / unit, config), strict=True))
+        return np.array([known[k] for k in candidates])
+
+    low, high = _range(points, config)
+    best = _coarse_to_fine(objective, low, high, config)
+    step = config.steps[-1]
+    sigma = None
+    if config.sub_step:
+        best, step = _sub_step(objective, best, step, low, high)
+    curve = np.array(sorted(known.items()))
+    curve[:, 0] /= unit
+    curve.setflags(write=False)
+    return ScaleEstimate(
+        ch_per_su=best / unit,
+        method="entropy",
+        sigma=sigma,
+        search_range=(low / unit, high / unit),
+        curve=curve,
+        at_edge=best <= low + step or best >= high - step,
+        converged=False,
+        keyframes_used=len(views),
+    )
+
+
+def _points(views: Sequence[CastLayout], config: ScaleConfig) -> _Points:
+    offsets, sectors, shares = [], [], []
+    for view in views:
+        width = len(view.offsets)
+        tangent = _tangent(view.offsets)
+        keep = np.unique(np.linspace(0, width, min(config.columns, width), endpoint=False).astype(int))
+        near = np.hypot(view.offsets[:, 0], view.offsets[:, 1]) <= config.max_range_ch
+        facing = np.mod(tangent, 2 * np.pi) * config.facings / (2 * np.pi)
+        usable = near & np.isfinite(facing)
+        first = np.where(usable, np.floor(np.where(usable, facing, 0.0)), -1.0)
+        offsets.append(view.offsets[keep])
+        sectors.append(np.where(first >= config.facings, 0, first)[keep].astype(np.int64))
+        shares.append(
+            np.where(usable, 1.0 - (facing - first), 0.0)[keep]
+            if config.facings > 1
+            else np.ones(len(keep))
+        )
+    return _Points(
+        offsets=np.array(offsets),
+        sectors=np.array(sectors),
+        sector_weights=np.array(shares),
+        positions=np.array([view.position_su for view in views]),
+        rises=np.array([view.rise_su for view in views]),
+    )
+
+
+def _tangent(offsets: FloatArray) -> FloatArray:
+    """Direction of the boundary at each column (rad), along which the room lies on one side."""
+    reach = max(1, len(offsets) // 128)
+    along = np.roll(offsets, -reach, axis=0) - np.roll(offsets, reach, axis=0)
+    return np.asarray(np.arctan2(along[:, 1], along[:, 0]))
+
+
+def _window_starts(count: int, window: int) -> list[tuple[int, int]]:
+    if count <= window:
+        return [(0, count)]
+    return [(start, start + window) for start in range(count - window + 1)]
+
+
+def _mean_entropy(
+    points: _Points, windows: list[tuple[int, int]], scales: FloatArray, config: ScaleConfig
+) -> FloatArray:
+    total = np.zeros(len(scales))
+    for start, stop in windows:
+        for cell in config.cells_ch:
+            for sign in (1, -1) if config.control else (1,):
+                total += sign * registered_entropy(
+                    points.offsets[start:stop],
+                    points.sectors[start:stop],
+                    points.sector_weights[start:stop],
+                    sign * (points.positions[start:stop] - points.positions[start]),
+                    points.rises[start:stop],
+                    scales,
+                    cell,
+                    config.facings,
+                    config.smooth,
+                )
+    return total / (len(windows) * len(config.cells_ch))
+
+
+def _range(points: _Points, config: ScaleConfig) -> tuple[float, float]:
+    """Search range in step units.
+
+    Above, two successive views no longer see a common wall: their cameras are farther apart than
+    twice the upper quartile of the ranges.
+    """
+    if config.step_unit == "absolute":
+        return config.absolute_range
+    ranges = np.linalg.norm(points.offsets, axis=2)[points.sectors >= 0]
+    return config.steps[-1], float(2 * np.percentile(ranges, 75))
+
+
+def _coarse_to_fine(
+    objective: Callable[[FloatArray], FloatArray], low: float, high: float, config: ScaleConfig
+) -> float:
+    """Best candidate of the last level; each level searches around the best few of the last."""
+    around: list[float] | None = None
+    best = low
+    for level, step in enumerate(config.steps):
+        multiples = np.arange(np.ceil(low / step), np.floor(high / step) + 1)
+        candidates = np.unique(np.concatenate([[low, high], multiples * step]))
+        if around is not None:
+            reach = config.steps[level - 1] + step / 2
+            # Below one coarse step the coarse level has seen nothing.
+            below = low + config.steps[0] if level == 1 else -np.inf
+            mask = candidates <= below
+            for centre in around:
+                mask |= np.abs(candidates - centre) <= reach
+            candidates = candidates[mask]
+        values = objective(candidates)
+        order = np.argsort(values, kind="stable")
+        best = float(candidates[order[0]])
+        around = [float(candidates[i]) for i in order[:_BEAM]]
+    return best
+
+
+def _sub_step(
+    objective: Callable[[FloatArray], FloatArray], best: float, step: float, low: float, high: float
+) -> tuple[float, float]:
+    """Refines below the last step, then takes the vertex of a parabola through the bottom."""
+    while step > _SUB_STEP_RESOLUTION * best:
+        fine = step / 4
+        candidates = np.clip(best + fine * np.arange(-5, 6), low, high)
+        best = float(candidates[np.argmin(objective(candidates))])
+        step = fine
+    nearby = np.clip(best + step * np.arange(-4, 5), low, high)
+    values = objective(nearby)
+    if len(np.unique(nearby)) == len(nearby):
+        a, b, _ = np.polyfit(nearby - best, values, 2)
+        if a > 0 and abs(b / (2 * a)) <= 4 * step:
+            best -= float(b / (2 * a))
+    return best, step

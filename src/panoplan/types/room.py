@@ -1,0 +1,92 @@
+"""What is known of a room while the camera walks. Walk frame, camera heights."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from panoplan.types.arrays import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class RoomDensity:
+    """Evidence for and against each cell being part of a room.
+
+    Cell (i, j) of the arrays has its centre at ((i + first_cell[0] + ½)·cell, ...).
+
+    Attributes:
+        first_cell: lattice index of the arrays' first cell.
+        free: (n, m) sum of the views that hold the cell, as the normalisation wants it.
+        against: (n, m) sum of the weights that speak against it.
+    """
+
+    first_cell: tuple[int, int]
+    free: NDArray[np.float32]
+    against: NDArray[np.float32]
+
+
+@dataclass(frozen=True, eq=False)
+class WallPiece:
+    """A piece of one layout's boundary that lies on one plane.
+
+    Attributes:
+        keyframe: id.
+        ends: (2, 2) first and last inlier, projected onto the plane.
+        direction: of the wall in [0, π) rad, from the first axis.
+        distance: from the camera to the plane.
+        points: (N, 2) the inliers.
+    """
+
+    keyframe: str
+    ends: FloatArray
+    direction: float
+    distance: float
+    points: FloatArray
+
+
+@dataclass(frozen=True)
+class RejectedPiece:
+    """A piece of boundary that is no evidence of a wall.
+
+    Attributes:
+        keyframe: id.
+        columns: first and last image column.
+        reason: why.
+    """
+
+    keyframe: str
+    columns: tuple[int, int]
+    reason: Literal["too few columns", "no plane fits", "seen edge-on", "too far"]
+
+
+@dataclass(frozen=True)
+class Orientation:
+    """One wall direction of a room, as a normal distribution (Eq. 7).
+
+    Attributes:
+        direction: mean in [0, π) rad, from the first axis.
+        sigma: standard deviation in rad.
+        support: number of walls that took part.
+    """
+
+    direction: float
+    sigma: float
+    support: int
+
+
+@dataclass(frozen=True, eq=False)
+class RoomShape:
+    """A room's outline, or why there is none.
+
+    Attributes:
+        polygon: (N, 2) simple, counter-clockwise; None where none was found.
+        failure: the reason, None where there is a polygon.
+        rounds: (N, 2) polygon of each round.
+    """
+
+    polygon: FloatArray | None
+    failure: str | None
+    rounds: tuple[FloatArray, ...] = ()

@@ -1,0 +1,54 @@
+"""A layout cast onto the floor, before and after the scale is known.
+
+Walk frame: 2-D, origin at the first keyframe's camera, second axis along that camera's heading;
+the same for a walk however its world is turned or shifted.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from panoplan.types.arrays import FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class CastLayout:
+    """A layout on the floor one camera height below its camera.
+
+    Attributes:
+        keyframe: id of the keyframe.
+        index: place of the keyframe in the walk.
+        position_su: (2,) camera, walk frame, trajectory units.
+        rise_su: how much higher than the first camera, trajectory units.
+        offsets: (W, 2) boundary points relative to the camera for a camera height of 1, walk
+            frame; NaN where unknown.
+        corners: (K,) columns of wall corners, or None.
+    """
+
+    keyframe: str
+    index: int
+    position_su: FloatArray
+    rise_su: float
+    offsets: FloatArray
+    corners: FloatArray | None
+
+
+@dataclass(frozen=True, eq=False)
+class RegisteredLayout:
+    """A layout in the walk frame, in camera heights (Eq. 2).
+
+    Attributes:
+        keyframe: id of the keyframe.
+        index: place of the keyframe in the walk.
+        camera: (2,) camera.
+        height: of this camera above the floor, 1 for the first.
+        boundary: (W, 2) boundary points, NaN where unknown.
+        corners: (K,) columns of wall corners, or None.
+    """
+
+    keyframe: str
+    index: int
+    camera: FloatArray
+    height: float
+    boundary: FloatArray
+    corners: FloatArray | None
