@@ -274,6 +274,23 @@ class ShapeConfig:
         0.03, "Width of a wall in the evidence map: the tolerance of L_plane.",
         unit="camera heights", low=1e-3, high=1.0,
     )
+    wall_near_ch: float = _setting(
+        1.2, "Walls nearer than this are drawn with `wall_sigma_ch`, farther ones wider with the "
+        "square of the distance, as measured range errors grow.",
+        unit="camera heights", low=0.1, high=100.0,
+    )
+    wall_merge_ch: float = _setting(
+        0.2, "Wall evidence within this reach is one wall: its ridge counts as 1.",
+        unit="camera heights", low=0.0, high=10.0,
+    )
+    wall_floor: float = _setting(
+        0.5, "Evidence that a wall needs to count as 1; a single near view gives 1.",
+        low=1e-6, high=100.0,
+    )
+    mask_margin_ch: float = _setting(
+        0.05, "The mask of L_mask is shrunk by this much, so that edges may run along its rim.",
+        unit="camera heights", low=0.0, high=1.0, paper=0.0,
+    )
     weight_orientation: float = _setting(
         0.6, "Cost of a radian between an edge and the nearest wall direction (lambda_ori).",
         low=0.0, high=1e4,
