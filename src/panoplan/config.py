@@ -64,15 +64,23 @@ class ScaleConfig:
         120, "The scale is frozen after so many keyframes in any case, so that a stream starts.",
         low=2, high=100_000,
     )
+    warmup_growth: float = _setting(
+        1.25, "The estimate is made anew whenever so many times more keyframes wait.",
+        low=1.01, high=10.0,
+    )
     settle_tolerance: float = _setting(
-        0.003, "Relative change of the estimate that counts as none.", low=0.0, high=1.0,
+        0.01, "Estimates within this share of one another count as the same.", low=0.0, high=1.0,
     )
     settle_count: int = _setting(
-        8, "Estimates in a row that must agree within `settle_tolerance`.", low=1, high=1000,
+        3, "So many estimates in a row must be the same for the scale to be frozen.",
+        low=2, high=1000,
     )
     window: int = _setting(
         10, "Keyframes a sliding window; it shrinks when there are fewer.", low=2, high=1000,
         paper=10,
+    )
+    window_stride: int = _setting(
+        3, "Keyframes from one window to the next.", low=1, high=1000, paper=1,
     )
     steps: tuple[float, ...] = _setting(
         (0.5, 0.1, 0.01),
@@ -121,7 +129,7 @@ class ScaleConfig:
         unit="camera heights", low=0.5, high=100.0, paper="unlimited",
     )
     columns: int = _setting(
-        512, "Columns of a layout that take part; neighbours are correlated over tens of columns.",
+        256, "Columns of a layout that take part; neighbours are correlated over tens of columns.",
         low=16, high=16384, paper="all",
     )
 
@@ -225,6 +233,11 @@ class OrientationConfig:
     sigma_per_ch_deg: float = _setting(
         4.0, "Growth of that noise with the distance of the wall (lambda).",
         unit="deg per camera height", low=0.0, high=180.0,
+    )
+    full_length_ch: float = _setting(
+        1.0, "Shorter walls are noisier in proportion: the direction of a line through noisy "
+        "points is as uncertain as the line is short; 0 turns this off.",
+        unit="camera heights", low=0.0, high=100.0, paper=0.0,
     )
     gate_deg: float = _setting(
         60.0, "An observation farther than this from every direction starts a new one.",

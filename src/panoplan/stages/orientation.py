@@ -30,6 +30,8 @@ def observe(
     Source: Eq. 7.
     """
     sigma = np.deg2rad(config.sigma0_deg + config.sigma_per_ch_deg * wall.distance)
+    length = float(np.linalg.norm(wall.ends[1] - wall.ends[0]))
+    sigma *= max(1.0, config.full_length_ch / max(length, 1e-9))
     if orientations:
         gaps = [abs(float(line_difference(wall.direction, o.direction))) for o in orientations]
         nearest = int(np.argmin(gaps))

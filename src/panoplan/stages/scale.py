@@ -53,7 +53,7 @@ def recover_scale(views: Sequence[CastLayout], config: ScaleConfig) -> ScaleEsti
     unit = median_step(views) if config.step_unit == "keyframe_step" else 1.0
     if unit <= 0.0 or not (points.sectors >= 0).any():
         return ScaleEstimate(None, "unknown", converged=False, keyframes_used=len(views))
-    starts = _window_starts(len(views), config.window)
+    starts = _windows(len(views), config)
     known: dict[float, float] = {}
 
     def objective(candidates: FloatArray) -> FloatArray:
@@ -116,10 +116,12 @@ def _tangent(offsets: FloatArray) -> FloatArray:
     return np.asarray(np.arctan2(along[:, 1], along[:, 0]))
 
 
-def _window_starts(count: int, window: int) -> list[tuple[int, int]]:
-    if count <= window:
+def _windows(count: int, config: ScaleConfig) -> list[tuple[int, int]]:
+    if count <= config.window:
         return [(0, count)]
-    return [(start, start + window) for start in range(count - window + 1)]
+    last = count - config.window
+    starts = [*range(0, last, config.window_stride), last]
+    return [(start, start + config.window) for start in starts]
 
 
 def _mean_entropy(

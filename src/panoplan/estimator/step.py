@@ -1,0 +1,282 @@
+"""One keyframe: step(state, keyframe, config) → (state', events)."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from panoplan.config import Config
+from panoplan.errors import ConfigError
+from panoplan.estimator.state import PlacedCamera, RoomState, State, WalkFrame
+from panoplan.geometry.rigid import heading_of, turn
+from panoplan.stages import orientation, planes, rooms, scale
+from panoplan.stages.registration import cast, register
+from panoplan.stages.shape.ispa import room_shape
+from panoplan.types.events import (
+    Event,
+    KeyframePlaced,
+    KeyframeSkipped,
+    KeyframeWaiting,
+    RoomOpened,
+    RoomShaped,
+    RoomsJoined,
+    ScaleFrozen,
+)
+from panoplan.types.keyframe import Keyframe
+from panoplan.types.plan import ScaleEstimate, Skipped
+from panoplan.types.view import CastLayout
+
+
+def room_id(number: int) -> str:
+    """Id of the room with this number."""
+    return f"room_{number:02d}"
+
+
+def step(state: State, keyframe: Keyframe, config: Config) -> tuple[State, tuple[Event, ...]]:
+    """Takes in one keyframe.
+
+    Args:
+        state: what is known so far.
+        keyframe: the next of the walk.
+        config: settings, the same at every step.
+
+    Returns:
+        What is known now, and what happened.
+    """
+    if state.frame is None:
+        turned = turn(-heading_of(keyframe.pose.rotation))
+        state = replace(state, frame=WalkFrame(keyframe.pose.translation, turned))
+    assert state.frame is not None
+    index = state.seen
+    moved = (keyframe.pose.translation - state.frame.origin_su)[[0, 2]]
+    camera = PlacedCamera(
+        keyframe.id,
+        state.frame.walk_from_world @ moved,
+        heading_of(keyframe.pose.rotation),
+        None,
+    )
+    state = replace(state, seen=index + 1, cameras=(*state.cameras, camera))
+    view = None
+    if keyframe.layout is not None:
+        view = cast(
+            keyframe, index, state.frame.origin_su, state.frame.walk_from_world, config.registration
+        )
+    if view is None or not np.isfinite(view.offsets).any():
+        reason = keyframe.missing if view is None else "no column of the layout is below the horizon"
+        skipped = Skipped(keyframe.id, "keyframe", reason)
+        state = replace(state, skipped=(*state.skipped, skipped))
+        events: tuple[Event, ...] = (KeyframeSkipped(keyframe.id, reason),)
+        return state, events
+    if state.scale is not None:
+        return _place(state, view, config)
+    state = replace(state, waiting=(*state.waiting, view))
+    waiting: Event = KeyframeWaiting(keyframe.id, len(state.waiting))
+    state, frozen = _warm_up(state, config)
+    return state, (waiting, *frozen)
+
+
+def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
+    """Ends the walk: freezes the scale if it is not, and shapes every room that needs it.
+
+    The walk may still go on afterwards.
+    """
+    events: list[Event] = []
+    if state.scale is None and state.waiting:
+        state, told = _freeze(state, _estimate(state, config), config)
+        events += told
+    for index in range(len(state.rooms)):
+        state, told = _shape(state, index, config)
+        events += told
+    return state, tuple(events)
+
+
+def _warm_up(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
+    count, mode = len(state.waiting), config.scale.warmup
+    if state.walk.trajectory_unit == "m" and state.walk.camera_height_m:
+        return _freeze(state, _estimate(state, config), config)
+    if mode == "converged":
+        due = max(state.next_estimate, config.scale.warmup_min)
+        if count < due:
+            return state, ()
+        estimate = _estimate(state, config)
+        history = (*state.estimates, estimate.ch_per_su or 0.0)
+        recent = history[-config.scale.settle_count :]
+        settled = len(recent) == config.scale.settle_count and (
+            max(recent) - min(recent) <= config.scale.settle_tolerance * recent[-1]
+        )
+        if settled or count >= config.scale.warmup_max:
+            return _freeze(state, replace(estimate, converged=settled), config)
+        grown = max(count + 1, int(np.ceil(count * config.scale.warmup_growth)))
+        grown = min(grown, max(count + 1, config.scale.warmup_max))
+        return replace(state, estimates=history, next_estimate=grown), ()
+    if isinstance(mode, float):
+        if state.walk.expected_keyframes is None:
+            raise ConfigError("scale.warmup", f"the fraction {mode}", "a walk of known length")
+        needed = max(2, int(np.ceil(mode * state.walk.expected_keyframes)))
+        # The last keyframes may have no layout, so the fraction counts keyframes seen.
+        enough = state.seen >= needed and count >= 2
+    else:
+        enough = count >= max(2, int(mode))
+    if not enough:
+        return state, ()
+    return _freeze(state, replace(_estimate(state, config), converged=True), config)
+
+
+def _estimate(state: State, config: Config) -> ScaleEstimate:
+    walk = state.walk
+    if walk.trajectory_unit == "m" and walk.camera_height_m:
+        return ScaleEstimate(1.0 / walk.camera_height_m, "given")
+    if len(state.waiting) < 2:
+        return ScaleEstimate(None, "unknown", converged=False, keyframes_used=len(state.waiting))
+    return scale.recover_scale(state.waiting, config.scale)
+
+
+def _freeze(
+    state: State, estimate: ScaleEstimate, config: Config
+) -> tuple[State, tuple[Event, ...]]:
+    waiting = state.waiting
+    state = replace(state, scale=estimate, waiting=())
+    events: list[Event] = [ScaleFrozen(estimate)]
+    for view in waiting:
+        state, told = _place(state, view, config)
+        events += told
+    return state, tuple(events)
+
+
+def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple[Event, ...]]:
+    assert state.scale is not None
+    layout = register(view, state.scale.ch_per_su or 0.0)
+    if layout.height <= 0:
+        reason = "its pose lies below the floor"
+        skipped = Skipped(view.keyframe, "keyframe", reason)
+        return replace(state, skipped=(*state.skipped, skipped)), (
+            KeyframeSkipped(view.keyframe, reason),
+        )
+    events: list[Event] = []
+    patch = rooms.clipped_patch(layout, config.rooms)
+    known = [room.density for room in state.rooms]
+    chosen, _ = rooms.choose(patch, known, state.current, config.rooms)
+    rng = np.random.default_rng([config.seed, view.index])
+    walls, rejected = planes.wall_pieces(layout, config.planes, rng)
+    if chosen is None:
+        number = max((room.number for room in state.rooms), default=0) + 1
+        room = RoomState(number, patch.density, walls, ())
+        chosen = len(state.rooms)
+        events.append(RoomOpened(view.keyframe, room_id(number)))
+    else:
+        old = state.rooms[chosen]
+        room = replace(
+            old,
+            density=rooms.add(old.density, patch.density, config.rooms),
+            walls=(*old.walls, *walls),
+        )
+    for wall in walls:
+        room = replace(
+            room, orientations=orientation.observe(room.orientations, wall, config.orientation)
+        )
+    room = replace(room, stale=True, away=0)
+    events.append(KeyframePlaced(view.keyframe, room_id(room.number), len(walls), len(rejected)))
+    counts = Counter(piece.reason for piece in rejected)
+    state = replace(
+        state,
+        rooms=(*state.rooms[:chosen], room, *state.rooms[chosen + 1 :]),
+        current=chosen,
+        cameras=_assigned(state.cameras, view.index, room.number),
+        skipped=(
+            *state.skipped,
+            *(Skipped(view.keyframe, "wall", why, n) for why, n in sorted(counts.items())),
+        ),
+    )
+    state, told = _join(state, config)
+    events += told
+    state, told = _leave(state, config)
+    return state, (*events, *told)
+
+
+def _assigned(
+    cameras: tuple[PlacedCamera, ...], index: int, number: int
+) -> tuple[PlacedCamera, ...]:
+    placed = replace(cameras[index], room=number)
+    return (*cameras[:index], placed, *cameras[index + 1 :])
+
+
+def _join(state: State, config: Config) -> tuple[State, Sequence[Event]]:
+    """Joins the current room with those that prove to be the same."""
+    events: list[Event] = []
+    while state.current is not None:
+        current = state.rooms[state.current]
+        same = [
+            i
+            for i, other in enumerate(state.rooms)
+            if i != state.current
+            and rooms.overlap(current.density, other.density, config.rooms)
+            > config.rooms.merge_overlap
+        ]
+        if not same:
+            break
+        kept_at, gone_at = sorted((state.current, same[0]))
+        kept, gone = state.rooms[kept_at], state.rooms[gone_at]
+        orientations = kept.orientations
+        for wall in gone.walls:
+            orientations = orientation.observe(orientations, wall, config.orientation)
+        joined = replace(
+            kept,
+            density=rooms.add(kept.density, gone.density, config.rooms),
+            walls=(*kept.walls, *gone.walls),
+            orientations=orientations,
+            stale=True,
+            away=0,
+        )
+        events.append(RoomsJoined(room_id(kept.number), room_id(gone.number)))
+        remaining = list(state.rooms)
+        remaining[kept_at] = joined
+        del remaining[gone_at]
+        state = replace(
+            state,
+            rooms=tuple(remaining),
+            current=kept_at,
+            cameras=tuple(
+                replace(camera, room=kept.number) if camera.room == gone.number else camera
+                for camera in state.cameras
+            ),
+        )
+    return state, events
+
+
+def _leave(state: State, config: Config) -> tuple[State, Sequence[Event]]:
+    """Counts keyframes away from each open room; shapes those that have been left."""
+    events: list[Event] = []
+    for index, room in enumerate(state.rooms):
+        if index == state.current or room.away < 0:
+            continue
+        left = room.away + 1 >= config.rooms.leave_after
+        changed = replace(room, away=-1 if left else room.away + 1)
+        state = replace(
+            state, rooms=(*state.rooms[:index], changed, *state.rooms[index + 1 :])
+        )
+        if left:
+            state, told = _shape(state, index, config)
+            events += told
+    return state, events
+
+
+def _shape(state: State, index: int, config: Config) -> tuple[State, Sequence[Event]]:
+    room = state.rooms[index]
+    if not room.stale:
+        return state, ()
+    directions, _ = orientation.accepted(room.orientations, config.orientation)
+    shape = room_shape(
+        rooms.density(room.density, config.rooms),
+        room.density.first_cell,
+        config.rooms.cell_ch,
+        config.rooms.threshold,
+        room.walls,
+        directions,
+        config.shape,
+    )
+    shaped = replace(room, shape=shape, stale=False)
+    state = replace(state, rooms=(*state.rooms[:index], shaped, *state.rooms[index + 1 :]))
+    return state, (RoomShaped(room_id(room.number), shape.polygon, shape.failure),)

@@ -1,0 +1,83 @@
+"""What the estimator tells while the camera walks."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from panoplan.types.arrays import FloatArray
+from panoplan.types.plan import ScaleEstimate
+
+
+@dataclass(frozen=True)
+class KeyframeWaiting:
+    """A keyframe is kept until the scale is known; `waiting` of them are."""
+
+    keyframe: str
+    waiting: int
+
+
+@dataclass(frozen=True, eq=False)
+class ScaleFrozen:
+    """The scale is known; waiting keyframes are replayed."""
+
+    scale: ScaleEstimate
+
+
+@dataclass(frozen=True)
+class KeyframeSkipped:
+    """A keyframe takes no part in the plan, and why."""
+
+    keyframe: str
+    reason: str
+
+
+@dataclass(frozen=True)
+class RoomOpened:
+    """A keyframe is in a room not seen before."""
+
+    keyframe: str
+    room: str
+
+
+@dataclass(frozen=True)
+class KeyframePlaced:
+    """A keyframe was assigned to a room; `walls` pieces were accepted, `rejected` were not."""
+
+    keyframe: str
+    room: str
+    walls: int
+    rejected: int
+
+
+@dataclass(frozen=True)
+class RoomsJoined:
+    """Two rooms proved to be one; `gone` lives on as `kept`."""
+
+    kept: str
+    gone: str
+
+
+@dataclass(frozen=True, eq=False)
+class RoomShaped:
+    """A room's shape was found (or not), when the camera left it or at the end.
+
+    Attributes:
+        room: id.
+        polygon: (N, 2) walk frame, camera heights, or None.
+        failure: why there is none.
+    """
+
+    room: str
+    polygon: FloatArray | None
+    failure: str | None
+
+
+Event = (
+    KeyframeWaiting
+    | ScaleFrozen
+    | KeyframeSkipped
+    | RoomOpened
+    | KeyframePlaced
+    | RoomsJoined
+    | RoomShaped
+)
