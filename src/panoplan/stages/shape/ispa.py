@@ -53,12 +53,15 @@ def room_shape(
     centres = (cells + np.asarray(first_cell) + 0.5) * lattice_cell
     direction = orientations[0].direction if orientations else 0.0
     rounds: list[FloatArray] = []
+    core_ch: FloatArray | None = None
     for number, count in enumerate(config.grids):
         grid = lay_grid(centres, lattice_cell, direction, count, config)
         mask = mask_on(grid, density, first_cell, lattice_cell, threshold)
         if not mask.any():
             return RoomShape(None, "the room's mask is empty on the grid", tuple(rounds))
-        core = core_of(mask)
+        if core_ch is None:
+            core_ch = grid.to_walk(core_of(mask)[None])
+        core = grid.to_grid(core_ch)[0]
         if number == 0:
             candidates = band_candidates(
                 mask, core, config.band_in_cells, config.band_out_cells
