@@ -20,7 +20,12 @@ NOT_PRINTED = "not in the paper"
 
 
 def _setting(
-    default: Any, doc: str, *, unit: str = "", low: float | None = None, high: float | None = None,
+    default: Any,
+    doc: str,
+    *,
+    unit: str = "",
+    low: float | None = None,
+    high: float | None = None,
     paper: object = NOT_PRINTED,
 ) -> Any:
     return field(
@@ -37,7 +42,9 @@ class RegistrationConfig:
         2.0,
         "Columns whose boundary lies less than this below the level horizon are unknown: at 2° the "
         "range is 29 camera heights and an error of one row of 512 changes it by a fifth.",
-        unit="deg", low=0.0, high=45.0,
+        unit="deg",
+        low=0.0,
+        high=45.0,
     )
     height_from_pose: bool = _setting(
         True,
@@ -52,35 +59,53 @@ class ScaleConfig:
 
     warmup: int | float | Literal["converged"] = _setting(
         "converged",
-        "How long keyframes are collected before the scale is frozen: a count, a fraction of a walk "
-        "whose length is known (0-1], or until the estimate has settled.",
+        "How long keyframes are collected before the scale is frozen: a count, a fraction of a "
+        "walk whose length is known (0-1], or until the estimate has settled.",
         paper=0.2,
     )
     warmup_min: int = _setting(
-        12, "Fewest keyframes before the estimate may count as settled: one window and two more.",
-        low=2, high=10_000,
+        12,
+        "Fewest keyframes before the estimate may count as settled: one window and two more.",
+        low=2,
+        high=10_000,
     )
     warmup_max: int = _setting(
-        120, "The scale is frozen after so many keyframes in any case, so that a stream starts.",
-        low=2, high=100_000,
+        120,
+        "The scale is frozen after so many keyframes in any case, so that a stream starts.",
+        low=2,
+        high=100_000,
     )
     warmup_growth: float = _setting(
-        1.25, "The estimate is made anew whenever so many times more keyframes wait.",
-        low=1.01, high=10.0,
+        1.25,
+        "The estimate is made anew whenever so many times more keyframes wait.",
+        low=1.01,
+        high=10.0,
     )
     settle_tolerance: float = _setting(
-        0.01, "Estimates within this share of one another count as the same.", low=0.0, high=1.0,
+        0.01,
+        "Estimates within this share of one another count as the same.",
+        low=0.0,
+        high=1.0,
     )
     settle_count: int = _setting(
-        3, "So many estimates in a row must be the same for the scale to be frozen.",
-        low=2, high=1000,
+        3,
+        "So many estimates in a row must be the same for the scale to be frozen.",
+        low=2,
+        high=1000,
     )
     window: int = _setting(
-        10, "Keyframes a sliding window; it shrinks when there are fewer.", low=2, high=1000,
+        10,
+        "Keyframes a sliding window; it shrinks when there are fewer.",
+        low=2,
+        high=1000,
         paper=10,
     )
     window_stride: int = _setting(
-        3, "Keyframes from one window to the next.", low=1, high=1000, paper=1,
+        3,
+        "Keyframes from one window to the next.",
+        low=1,
+        high=1000,
+        paper=1,
     )
     steps: tuple[float, ...] = _setting(
         (0.5, 0.1, 0.01),
@@ -98,21 +123,26 @@ class ScaleConfig:
         "Range of s for `step_unit = absolute`; with `keyframe_step` the range follows the data.",
     )
     sub_step: bool = _setting(
-        True, "Goes on below the last step until a step is 0.2 % of s, then fits a parabola.",
+        True,
+        "Goes on below the last step until a step is 0.2 % of s, then fits a parabola.",
         paper=False,
     )
     cells_ch: tuple[float, ...] = _setting(
         (0.02, 0.03, 0.05),
         "Cell sizes of the histogram; entropies are averaged over them. Near the noise of a good "
         "layout: wider cells cannot see a misalignment of a few centimetres.",
-        unit="camera heights", low=1e-3, high=1.0,
+        unit="camera heights",
+        low=1e-3,
+        high=1.0,
     )
     facings: int = _setting(
         4,
         "Directions into which wall points are sorted by the side the wall is seen from, so that "
         "the two faces of one wall never share a cell; 1 turns this off. Without it a scale a few "
         "per cent low, which lays both faces on one another, has the lower entropy.",
-        low=1, high=16, paper=1,
+        low=1,
+        high=16,
+        paper=1,
     )
     control: bool = _setting(
         True,
@@ -121,16 +151,24 @@ class ScaleConfig:
         paper=False,
     )
     smooth: bool = _setting(
-        True, "Each point is shared among the four nearest cells, so that the curve is smooth.",
+        True,
+        "Each point is shared among the four nearest cells, so that the curve is smooth.",
         paper=False,
     )
     max_range_ch: float = _setting(
-        4.0, "Farther points take no part: their range error exceeds every cell.",
-        unit="camera heights", low=0.5, high=100.0, paper="unlimited",
+        4.0,
+        "Farther points take no part: their range error exceeds every cell.",
+        unit="camera heights",
+        low=0.5,
+        high=100.0,
+        paper="unlimited",
     )
     columns: int = _setting(
-        256, "Columns of a layout that take part; neighbours are correlated over tens of columns.",
-        low=16, high=16384, paper="all",
+        256,
+        "Columns of a layout that take part; neighbours are correlated over tens of columns.",
+        low=16,
+        high=16384,
+        paper="all",
     )
 
 
@@ -141,31 +179,44 @@ class RoomsConfig:
     clip_radius_ch: float = _setting(
         3.0,
         "Clipping radius r of Eq. 6: layouts are good to a tenth of the range up to about there.",
-        unit="camera heights", low=0.2, high=100.0,
+        unit="camera heights",
+        low=0.2,
+        high=100.0,
     )
     cell_ch: float = _setting(
-        0.05, "Cell of the room density maps: 7 to 8 cm at eye level.",
-        unit="camera heights", low=0.005, high=1.0,
+        0.05,
+        "Cell of the room density maps: 7 to 8 cm at eye level.",
+        unit="camera heights",
+        low=0.005,
+        high=1.0,
     )
     normalise: Literal["running_max", "max", "coverage"] = _setting(
         "coverage",
-        "How a room's density is normalised: by its maximum at each update (Algorithm 1 as printed; "
-        "old evidence halves every time), once by the maximum, or by the views that could see the "
-        "cell.",
+        "How a room's density is normalised: by its maximum at each update (Algorithm 1 as "
+        "printed; old evidence halves every time), once by the maximum, or by the views that could "
+        "see the cell.",
         paper="running_max",
     )
     beyond_weight: float = _setting(
         0.1,
         "Weight of a view's evidence against a cell that lies farther than `wall_band_ch` beyond "
         "its boundary: hidden, hence little against.",
-        low=0.0, high=1.0,
+        low=0.0,
+        high=1.0,
     )
     wall_band_ch: float = _setting(
-        0.2, "How far beyond its boundary a view speaks against a cell with full weight.",
-        unit="camera heights", low=0.0, high=10.0,
+        0.2,
+        "How far beyond its boundary a view speaks against a cell with full weight.",
+        unit="camera heights",
+        low=0.0,
+        high=10.0,
     )
     threshold: float = _setting(
-        0.5, "Density from which a cell belongs to a room.", low=0.0, high=1.0, paper=0.5,
+        0.5,
+        "Density from which a cell belongs to a room.",
+        low=0.0,
+        high=1.0,
+        paper=0.5,
     )
     membership: Literal["camera", "overlap"] = _setting(
         "overlap",
@@ -175,20 +226,31 @@ class RoomsConfig:
         paper="camera",
     )
     overlap_min: float = _setting(
-        0.5, "Overlap from which a keyframe belongs to a known room.", low=0.0, high=1.0,
+        0.5,
+        "Overlap from which a keyframe belongs to a known room.",
+        low=0.0,
+        high=1.0,
     )
     overlap_stay: float = _setting(
-        0.4, "The same for the room that the camera was last in.", low=0.0, high=1.0,
+        0.4,
+        "The same for the room that the camera was last in.",
+        low=0.0,
+        high=1.0,
     )
     merge_overlap: float = _setting(
         0.6,
         "Two rooms whose masks overlap by more than this share of the smaller one are joined; "
         "1 joins none.",
-        low=0.0, high=1.0, paper=1.0,
+        low=0.0,
+        high=1.0,
+        paper=1.0,
     )
     leave_after: int = _setting(
-        2, "Keyframes in a row assigned elsewhere after which a room counts as left.",
-        low=1, high=100, paper=1,
+        2,
+        "Keyframes in a row assigned elsewhere after which a room counts as left.",
+        low=1,
+        high=100,
+        paper=1,
     )
 
 
@@ -197,23 +259,40 @@ class PlanesConfig:
     """Wall pieces and their planes."""
 
     max_residual_ch: float = _setting(
-        0.03, "Largest distance of an inlier from its plane.",
-        unit="camera heights", low=1e-4, high=1.0, paper=0.03,
+        0.03,
+        "Largest distance of an inlier from its plane.",
+        unit="camera heights",
+        low=1e-4,
+        high=1.0,
+        paper=0.03,
     )
     min_inlier_ratio: float = _setting(
-        0.9, "Pieces with a smaller share of inliers are rejected.", low=0.0, high=1.0, paper=0.9,
+        0.9,
+        "Pieces with a smaller share of inliers are rejected.",
+        low=0.0,
+        high=1.0,
+        paper=0.9,
     )
     iterations: int = _setting(
-        50, "RANSAC iterations a piece: at the inlier ratio asked for, the chance of never drawing "
-        "two inliers is below 1e-30.", low=1, high=10_000,
+        50,
+        "RANSAC iterations a piece: at the inlier ratio asked for, the chance of never drawing "
+        "two inliers is below 1e-30.",
+        low=1,
+        high=10_000,
     )
     min_columns: int = _setting(
-        6, "Pieces of fewer columns (of 1024; in proportion otherwise) are rejected.",
-        low=2, high=1000,
+        6,
+        "Pieces of fewer columns (of 1024; in proportion otherwise) are rejected.",
+        low=2,
+        high=1000,
     )
     max_range_ch: float = _setting(
-        6.0, "Points farther than this are not wall evidence: one degree is 0.6 camera heights there.",
-        unit="camera heights", low=0.5, high=100.0, paper="unlimited",
+        6.0,
+        "Points farther than this are not wall evidence: one degree is 0.6 camera heights there.",
+        unit="camera heights",
+        low=0.5,
+        high=100.0,
+        paper="unlimited",
     )
     resplit: bool = _setting(
         True,
@@ -228,28 +307,52 @@ class OrientationConfig:
     """Bayesian filter of wall directions (Eq. 7)."""
 
     sigma0_deg: float = _setting(
-        4.0, "Noise of a wall direction next to the camera.", unit="deg", low=0.01, high=180.0,
+        4.0,
+        "Noise of a wall direction next to the camera.",
+        unit="deg",
+        low=0.01,
+        high=180.0,
     )
     sigma_per_ch_deg: float = _setting(
-        4.0, "Growth of that noise with the distance of the wall (lambda).",
-        unit="deg per camera height", low=0.0, high=180.0,
+        4.0,
+        "Growth of that noise with the distance of the wall (lambda).",
+        unit="deg per camera height",
+        low=0.0,
+        high=180.0,
     )
     full_length_ch: float = _setting(
-        1.0, "Shorter walls are noisier in proportion: the direction of a line through noisy "
+        1.0,
+        "Shorter walls are noisier in proportion: the direction of a line through noisy "
         "points is as uncertain as the line is short; 0 turns this off.",
-        unit="camera heights", low=0.0, high=100.0, paper=0.0,
+        unit="camera heights",
+        low=0.0,
+        high=100.0,
+        paper=0.0,
     )
     gate_deg: float = _setting(
-        60.0, "An observation farther than this from every direction starts a new one.",
-        unit="deg", low=0.0, high=90.0, paper=60.0,
+        60.0,
+        "An observation farther than this from every direction starts a new one.",
+        unit="deg",
+        low=0.0,
+        high=90.0,
+        paper=60.0,
     )
     initial_sigma_deg: float = _setting(
-        360.0, "Standard deviation with which a direction starts.",
-        unit="deg", low=0.01, high=3600.0, paper=360.0,
+        360.0,
+        "Standard deviation with which a direction starts.",
+        unit="deg",
+        low=0.01,
+        high=3600.0,
+        paper=360.0,
     )
     final_sigma_deg: float = _setting(
-        18.0, "Directions less certain than this are dropped at the end; the best-supported is "
-        "kept and flagged when none is left.", unit="deg", low=0.01, high=3600.0, paper=18.0,
+        18.0,
+        "Directions less certain than this are dropped at the end; the best-supported is "
+        "kept and flagged when none is left.",
+        unit="deg",
+        low=0.01,
+        high=3600.0,
+        paper=18.0,
     )
 
 
@@ -258,67 +361,117 @@ class ShapeConfig:
     """Room shape by iterative shortest path (Eq. 8-11)."""
 
     grids: tuple[int, ...] = _setting(
-        (64, 96, 96), "Cells along the longer side of the room's box, one number a round.",
+        (64, 96, 96),
+        "Cells along the longer side of the room's box, one number a round.",
         paper=(64, 96, 96),
     )
     fixed_cell_ch: float = _setting(
-        0.0, "Where above zero, the cell of every round instead of `grids` (first row of Table III).",
-        unit="camera heights", low=0.0, high=1.0, paper=0.0,
+        0.0,
+        "Where above zero, the cell of every round instead of `grids` (first row of Table III).",
+        unit="camera heights",
+        low=0.0,
+        high=1.0,
+        paper=0.0,
     )
     limit_edges: bool = _setting(
-        True, "Whether the first round limits the length of edges.", paper=True,
+        True,
+        "Whether the first round limits the length of edges.",
+        paper=True,
     )
     max_edge_cells: float = _setting(
-        15.0, "Longest edge of the first round.", unit="cells", low=2.0, high=1000.0,
+        15.0,
+        "Longest edge of the first round.",
+        unit="cells",
+        low=2.0,
+        high=1000.0,
     )
     band_in_cells: float = _setting(
-        2.0, "Corner candidates lie at most so far inside the mask.",
-        unit="cells", low=0.0, high=100.0,
+        2.0,
+        "Corner candidates lie at most so far inside the mask.",
+        unit="cells",
+        low=0.0,
+        high=100.0,
     )
     band_out_cells: float = _setting(
-        3.0, "Corner candidates lie at most so far outside the mask.",
-        unit="cells", low=0.5, high=100.0,
+        3.0,
+        "Corner candidates lie at most so far outside the mask.",
+        unit="cells",
+        low=0.5,
+        high=100.0,
     )
     refine_cells: float = _setting(
-        2.5, "Later rounds look for corners at most so far from earlier ones.",
-        unit="cells", low=0.5, high=100.0,
+        2.5,
+        "Later rounds look for corners at most so far from earlier ones.",
+        unit="cells",
+        low=0.5,
+        high=100.0,
     )
     wall_sigma_ch: float = _setting(
-        0.03, "Width of a wall in the evidence map: the tolerance of L_plane.",
-        unit="camera heights", low=1e-3, high=1.0,
+        0.03,
+        "Width of a wall in the evidence map: the tolerance of L_plane.",
+        unit="camera heights",
+        low=1e-3,
+        high=1.0,
     )
     wall_near_ch: float = _setting(
-        1.2, "Walls nearer than this are drawn with `wall_sigma_ch`, farther ones wider with the "
+        1.2,
+        "Walls nearer than this are drawn with `wall_sigma_ch`, farther ones wider with the "
         "square of the distance, as measured range errors grow.",
-        unit="camera heights", low=0.1, high=100.0,
+        unit="camera heights",
+        low=0.1,
+        high=100.0,
     )
     wall_merge_ch: float = _setting(
-        0.2, "Wall evidence within this reach is one wall: its ridge counts as 1.",
-        unit="camera heights", low=0.0, high=10.0,
+        0.2,
+        "Wall evidence within this reach is one wall: its ridge counts as 1.",
+        unit="camera heights",
+        low=0.0,
+        high=10.0,
     )
     wall_floor: float = _setting(
-        0.5, "Evidence that a wall needs to count as 1; a single near view gives 1.",
-        low=1e-6, high=100.0,
+        0.5,
+        "Evidence that a wall needs to count as 1; a single near view gives 1.",
+        low=1e-6,
+        high=100.0,
     )
     mask_margin_ch: float = _setting(
-        0.05, "The mask of L_mask is shrunk by this much, so that edges may run along its rim.",
-        unit="camera heights", low=0.0, high=1.0, paper=0.0,
+        0.05,
+        "The mask of L_mask is shrunk by this much, so that edges may run along its rim.",
+        unit="camera heights",
+        low=0.0,
+        high=1.0,
+        paper=0.0,
     )
     weight_orientation: float = _setting(
-        0.6, "Cost of a radian between an edge and the nearest wall direction (lambda_ori).",
-        low=0.0, high=1e4,
+        0.6,
+        "Cost of a radian between an edge and the nearest wall direction (lambda_ori).",
+        low=0.0,
+        high=1e4,
     )
     weight_plane: float = _setting(
-        1.0, "Cost of a camera height of edge off every wall (lambda_plane).", low=0.0, high=1e4,
+        1.0,
+        "Cost of a camera height of edge off every wall (lambda_plane).",
+        low=0.0,
+        high=1e4,
     )
     weight_mask: float = _setting(
-        4.0, "Cost of a camera height of edge inside the mask (lambda_mask).", low=0.0, high=1e4,
+        4.0,
+        "Cost of a camera height of edge inside the mask (lambda_mask).",
+        low=0.0,
+        high=1e4,
     )
     weight_complexity: float = _setting(
-        0.12, "Cost of a corner (lambda_complex).", low=0.0, high=1e4,
+        0.12,
+        "Cost of a corner (lambda_complex).",
+        low=0.0,
+        high=1e4,
     )
     min_area_ch2: float = _setting(
-        0.1, "Smaller masks have no shape.", unit="square camera heights", low=0.0, high=100.0,
+        0.1,
+        "Smaller masks have no shape.",
+        unit="square camera heights",
+        low=0.0,
+        high=100.0,
     )
 
 
@@ -389,7 +542,8 @@ def _replace(node: Any, changes: Mapping[str, Any], path: str) -> Any:
         if key not in names:
             near = difflib.get_close_matches(key, names, n=1)
             raise ConfigError(
-                where, "an unknown setting",
+                where,
+                "an unknown setting",
                 f"{path}{near[0]}" if near else "one of " + ", ".join(names),
             )
         old = getattr(node, key)
@@ -414,8 +568,10 @@ def _check(node: Any, path: str) -> None:
             raise ConfigError(where, repr(value), wanted.removesuffix("'>"))
         low, high = item.metadata.get("low"), item.metadata.get("high")
         for number in value if isinstance(value, tuple) else (value,):
-            if isinstance(number, (int, float)) and not isinstance(number, bool) and not (
-                (low is None or number >= low) and (high is None or number <= high)
+            if (
+                isinstance(number, (int, float))
+                and not isinstance(number, bool)
+                and not ((low is None or number >= low) and (high is None or number <= high))
             ):
                 raise ConfigError(where, repr(value), f"{low} to {high} {item.metadata['unit']}")
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -49,27 +48,27 @@ def step(state: State, keyframe: Keyframe, config: Config) -> tuple[State, tuple
     if state.frame is None:
         turned = turn(-heading_of(keyframe.pose.rotation))
         state = replace(state, frame=WalkFrame(keyframe.pose.translation, turned))
-    assert state.frame is not None
+    frame = state.frame
+    assert frame is not None
     index = state.seen
-    moved = (keyframe.pose.translation - state.frame.origin_su)[[0, 2]]
+    moved = (keyframe.pose.translation - frame.origin_su)[[0, 2]]
     camera = PlacedCamera(
         keyframe.id,
-        state.frame.walk_from_world @ moved,
+        frame.walk_from_world @ moved,
         heading_of(keyframe.pose.rotation),
         None,
     )
     state = replace(state, seen=index + 1, cameras=(*state.cameras, camera))
     view = None
     if keyframe.layout is not None:
-        view = cast(
-            keyframe, index, state.frame.origin_su, state.frame.walk_from_world, config.registration
-        )
+        view = cast(keyframe, index, frame.origin_su, frame.walk_from_world, config.registration)
     if view is None or not np.isfinite(view.offsets).any():
-        reason = keyframe.missing if view is None else "no column of the layout is below the horizon"
+        reason = (
+            keyframe.missing if view is None else "no column of the layout is below the horizon"
+        )
         skipped = Skipped(keyframe.id, "keyframe", reason)
         state = replace(state, skipped=(*state.skipped, skipped))
-        events: tuple[Event, ...] = (KeyframeSkipped(keyframe.id, reason),)
-        return state, events
+        return state, (KeyframeSkipped(keyframe.id, reason),)
     if state.scale is not None:
         return _place(state, view, config)
     state = replace(state, waiting=(*state.waiting, view))
@@ -203,7 +202,7 @@ def _assigned(
     return (*cameras[:index], placed, *cameras[index + 1 :])
 
 
-def _join(state: State, config: Config) -> tuple[State, Sequence[Event]]:
+def _join(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
     """Joins the current room with those that prove to be the same."""
     events: list[Event] = []
     while state.current is not None:
@@ -243,10 +242,10 @@ def _join(state: State, config: Config) -> tuple[State, Sequence[Event]]:
                 for camera in state.cameras
             ),
         )
-    return state, events
+    return state, tuple(events)
 
 
-def _leave(state: State, config: Config) -> tuple[State, Sequence[Event]]:
+def _leave(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
     """Counts keyframes away from each open room; shapes those that have been left."""
     events: list[Event] = []
     for index, room in enumerate(state.rooms):
@@ -254,16 +253,14 @@ def _leave(state: State, config: Config) -> tuple[State, Sequence[Event]]:
             continue
         left = room.away + 1 >= config.rooms.leave_after
         changed = replace(room, away=-1 if left else room.away + 1)
-        state = replace(
-            state, rooms=(*state.rooms[:index], changed, *state.rooms[index + 1 :])
-        )
+        state = replace(state, rooms=(*state.rooms[:index], changed, *state.rooms[index + 1 :]))
         if left:
             state, told = _shape(state, index, config)
             events += told
-    return state, events
+    return state, tuple(events)
 
 
-def _shape(state: State, index: int, config: Config) -> tuple[State, Sequence[Event]]:
+def _shape(state: State, index: int, config: Config) -> tuple[State, tuple[Event, ...]]:
     room = state.rooms[index]
     if not room.stale:
         return state, ()

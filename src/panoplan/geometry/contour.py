@@ -24,7 +24,7 @@ def trace_outline(mask: BoolArray) -> FloatArray:
 
 
 @njit(cache=True)
-def _trace(mask):  # type: ignore[no-untyped-def]
+def _trace(mask):
     n, m = mask.shape
     start_i, start_j = -1, -1
     for i in range(n):

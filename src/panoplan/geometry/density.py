@@ -48,9 +48,7 @@ def registered_entropy(
 
 
 @njit(cache=True)
-def _entropy(
-    offsets, sectors, sector_weights, positions, drops, scales, cell, n_sectors, smooth
-):  # type: ignore[no-untyped-def]
+def _entropy(offsets, sectors, sector_weights, positions, drops, scales, cell, n_sectors, smooth):
     n_views, width = sectors.shape
     out = np.empty(scales.size)
     histogram = np.zeros(1)

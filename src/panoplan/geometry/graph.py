@@ -13,6 +13,10 @@ FloatArray = NDArray[np.float64]
 IntArray = NDArray[np.int64]
 
 
+# A little less than π: an edge through the core itself winds neither way.
+_HALF_TURN = np.pi - 1e-6
+
+
 @dataclass(frozen=True, eq=False)
 class CycleGraph:
     """Edges between corner candidates in the order of one lap, with their costs.
@@ -88,9 +92,22 @@ def build_graph(
     ends = np.empty(starts[-1], dtype=np.int64)
     costs = np.empty(starts[-1])
     _fill_edges(
-        nodes, order, lap, turn, off_wall, inside, directions,
-        weights.orientation, weights.plane, weights.mask, weights.complexity,
-        max_advance, max_length, starts, ends, costs,
+        nodes,
+        order,
+        lap,
+        turn,
+        off_wall,
+        inside,
+        directions,
+        weights.orientation,
+        weights.plane,
+        weights.mask,
+        weights.complexity,
+        max_advance,
+        max_length,
+        starts,
+        ends,
+        costs,
     )
     return CycleGraph(starts, ends, costs)
 
@@ -138,20 +155,20 @@ def shortest_cycle(graph: CycleGraph) -> tuple[IntArray, float] | None:
 
 
 @njit(cache=True)
-def _admissible(i, j, nodes, order, lap, turn, max_advance, max_length):  # type: ignore[no-untyped-def]
+def _admissible(i, j, nodes, order, lap, turn, max_advance, max_length):
     advance = order[j] - order[i]
     rotation = turn[j] - turn[i]
     if j < i:
         advance += lap
         rotation += 2 * np.pi
-    if advance <= 0.0 or advance > max_advance or abs(rotation) >= np.pi:
+    if advance <= 0.0 or advance > max_advance or abs(rotation) >= _HALF_TURN:
         return False
     dx, dy = nodes[j, 0] - nodes[i, 0], nodes[j, 1] - nodes[i, 1]
     return dx * dx + dy * dy <= max_length * max_length
 
 
 @njit(cache=True)
-def _count_edges(nodes, order, lap, turn, max_advance, max_length):  # type: ignore[no-untyped-def]
+def _count_edges(nodes, order, lap, turn, max_advance, max_length):
     n = nodes.shape[0]
     count = np.zeros(n, dtype=np.int64)
     for i in range(n):
@@ -167,10 +184,23 @@ def _count_edges(nodes, order, lap, turn, max_advance, max_length):  # type: ign
 
 @njit(cache=True)
 def _fill_edges(
-    nodes, order, lap, turn, off_wall, inside, directions,
-    w_orientation, w_plane, w_mask, w_complexity,
-    max_advance, max_length, starts, ends, costs,
-):  # type: ignore[no-untyped-def]
+    nodes,
+    order,
+    lap,
+    turn,
+    off_wall,
+    inside,
+    directions,
+    w_orientation,
+    w_plane,
+    w_mask,
+    w_complexity,
+    max_advance,
+    max_length,
+    starts,
+    ends,
+    costs,
+):
     n = nodes.shape[0]
     rows, cols = off_wall.shape
     for i in range(n):
@@ -197,12 +227,16 @@ def _fill_edges(
                 w00, w01 = (1 - fx) * (1 - fy), (1 - fx) * fy
                 w10, w11 = fx * (1 - fy), fx * fy
                 plane += (
-                    w00 * off_wall[a, b] + w01 * off_wall[a, b + 1]
-                    + w10 * off_wall[a + 1, b] + w11 * off_wall[a + 1, b + 1]
+                    w00 * off_wall[a, b]
+                    + w01 * off_wall[a, b + 1]
+                    + w10 * off_wall[a + 1, b]
+                    + w11 * off_wall[a + 1, b + 1]
                 )
                 covered += (
-                    w00 * inside[a, b] + w01 * inside[a, b + 1]
-                    + w10 * inside[a + 1, b] + w11 * inside[a + 1, b + 1]
+                    w00 * inside[a, b]
+                    + w01 * inside[a, b + 1]
+                    + w10 * inside[a + 1, b]
+                    + w11 * inside[a + 1, b + 1]
                 )
             cost = w_complexity + (w_plane * plane + w_mask * covered) * length / samples
             if directions.size:
@@ -218,7 +252,7 @@ def _fill_edges(
 
 
 @njit(cache=True)
-def _crosses_seam(starts, ends):  # type: ignore[no-untyped-def]
+def _crosses_seam(starts, ends):
     crosses = np.zeros(ends.size, dtype=np.bool_)
     for i in range(starts.size - 1):
         for e in range(starts[i], starts[i + 1]):
@@ -227,7 +261,7 @@ def _crosses_seam(starts, ends):  # type: ignore[no-untyped-def]
 
 
 @njit(cache=True)
-def _bound(starts, ends, costs, n, candidates):  # type: ignore[no-untyped-def]
+def _bound(starts, ends, costs, n, candidates):
     allowed = np.zeros(n, dtype=np.bool_)
     distance = np.full(n, np.inf)
     before = np.full(n, -1, dtype=np.int64)

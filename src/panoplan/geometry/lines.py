@@ -65,7 +65,7 @@ def farthest_from_chord(points: FloatArray) -> tuple[int, float]:
 
 
 @njit(cache=True)
-def _best_candidate(points, pairs, max_residual):  # type: ignore[no-untyped-def]
+def _best_candidate(points, pairs, max_residual):
     n = points.shape[0]
     best = np.zeros(n, dtype=np.bool_)
     best_count = 0

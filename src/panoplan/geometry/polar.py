@@ -77,16 +77,23 @@ def star_evidence(
     free = np.zeros(shape, dtype=np.float32)
     against = np.zeros(shape, dtype=np.float32)
     _star_evidence(
-        float(camera[0]), float(camera[1]), profile, radius, band, beyond_weight, cell,
-        first_cell[0], first_cell[1], free, against,
+        float(camera[0]),
+        float(camera[1]),
+        profile,
+        radius,
+        band,
+        beyond_weight,
+        cell,
+        first_cell[0],
+        first_cell[1],
+        free,
+        against,
     )
     return free, against
 
 
 @njit(cache=True)
-def _star_evidence(
-    cx, cy, profile, radius, band, beyond_weight, cell, i0, j0, free, against
-):  # type: ignore[no-untyped-def]
+def _star_evidence(cx, cy, profile, radius, band, beyond_weight, cell, i0, j0, free, against):
     bins = profile.size
     for i in range(free.shape[0]):
         x = (i0 + i + 0.5) * cell - cx

@@ -24,7 +24,7 @@ def splat_segments(
 
 
 @njit(cache=True)
-def _splat(target, ends, sigmas, weights):  # type: ignore[no-untyped-def]
+def _splat(target, ends, sigmas, weights):
     rows, cols = target.shape
     for k in range(ends.shape[0]):
         ax, ay, bx, by = ends[k, 0, 0], ends[k, 0, 1], ends[k, 1, 0], ends[k, 1, 1]

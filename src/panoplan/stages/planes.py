@@ -35,7 +35,7 @@ def wall_pieces(
     walls: list[WallPiece] = []
     rejected: list[RejectedPiece] = []
     columns_needed = max(2, round(config.min_columns * len(view.boundary) / 1024))
-    pending = [piece for piece in split(view)][::-1]
+    pending = split(view)[::-1]
     while pending:
         columns = pending.pop()
         points = view.boundary[columns]

@@ -40,13 +40,11 @@ def cast(
     if layout is None:
         raise ValueError("the keyframe has no layout")
     width = layout.width
-    headings = column_heading(np.arange(width), width)
+    headings = column_heading(np.arange(width, dtype=float), width)
     directions = rays(layout.floor_boundary, headings) @ keyframe.pose.rotation.T
     down = directions[:, 1]
     with np.errstate(invalid="ignore"):
-        seen = (layout.floor_boundary < 0) & (
-            down > np.sin(np.deg2rad(config.min_depression_deg))
-        )
+        seen = (layout.floor_boundary < 0) & (down > np.sin(np.deg2rad(config.min_depression_deg)))
     offsets = np.full((width, 2), np.nan)
     offsets[seen] = directions[seen][:, [0, 2]] / down[seen, None] @ walk_from_world.T
     moved = keyframe.pose.translation - origin_su

@@ -50,8 +50,14 @@ def clipped_patch(view: RegisteredLayout, config: RoomsConfig) -> Patch:
     high = np.floor((view.camera + reach) / config.cell_ch).astype(int) + 1
     first = (int(low[0]), int(low[1]))
     free, against = star_evidence(
-        view.camera, profile, reach, config.wall_band_ch, config.beyond_weight, config.cell_ch,
-        first, (int(high[0] - low[0]), int(high[1] - low[1])),
+        view.camera,
+        profile,
+        reach,
+        config.wall_band_ch,
+        config.beyond_weight,
+        config.cell_ch,
+        first,
+        (int(high[0] - low[0]), int(high[1] - low[1])),
     )
     known = profile[np.isfinite(profile)]
     near = float(np.percentile(known, _NEAR_PERCENTILE)) if known.size else 0.0
@@ -101,7 +107,8 @@ def density(room: RoomDensity, config: RoomsConfig) -> FloatArray:
     """
     if config.normalise == "coverage":
         total = room.free + room.against
-        return np.divide(room.free, total, out=np.zeros_like(total), where=total > 0).astype(float)
+        share = np.divide(room.free, total, out=np.zeros_like(total), where=total > 0)
+        return np.asarray(share, dtype=np.float64)
     return room.free.astype(float) / max(float(room.free.max(initial=0.0)), 1e-12)
 
 
@@ -152,8 +159,9 @@ def overlap(one: RoomDensity, other: RoomDensity, config: RoomsConfig) -> float:
     if np.any(high <= low):
         return 0.0
     a, b = mask(one, config), mask(other, config)
-    common = np.count_nonzero(_crop(a, one, low, high) & _crop(b, other, low, high))
-    return common / max(1, min(np.count_nonzero(a), np.count_nonzero(b)))
+    common = int(np.count_nonzero(_crop(a, one, low, high) & _crop(b, other, low, high)))
+    smaller = min(int(np.count_nonzero(a)), int(np.count_nonzero(b)))
+    return common / max(1, smaller)
 
 
 def _crop(cells: BoolArray, room: RoomDensity, low: FloatArray, high: FloatArray) -> BoolArray:

@@ -59,7 +59,9 @@ def recover_scale(views: Sequence[CastLayout], config: ScaleConfig) -> ScaleEsti
     def objective(candidates: FloatArray) -> FloatArray:
         fresh = np.array([k for k in candidates if k not in known])
         if fresh.size:
-            known.update(zip(fresh, _mean_entropy(points, starts, fresh / unit, config), strict=True))
+            known.update(
+                zip(fresh, _mean_entropy(points, starts, fresh / unit, config), strict=True)
+            )
         return np.array([known[k] for k in candidates])
 
     low, high = _range(points, config)
@@ -88,7 +90,9 @@ def _points(views: Sequence[CastLayout], config: ScaleConfig) -> _Points:
     for view in views:
         width = len(view.offsets)
         tangent = _tangent(view.offsets)
-        keep = np.unique(np.linspace(0, width, min(config.columns, width), endpoint=False).astype(int))
+        keep = np.unique(
+            np.linspace(0, width, min(config.columns, width), endpoint=False).astype(int)
+        )
         near = np.hypot(view.offsets[:, 0], view.offsets[:, 1]) <= config.max_range_ch
         facing = np.mod(tangent, 2 * np.pi) * config.facings / (2 * np.pi)
         usable = near & np.isfinite(facing)

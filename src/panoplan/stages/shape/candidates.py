@@ -37,9 +37,7 @@ def core_of(mask: BoolArray) -> FloatArray:
     return np.array(at, dtype=float) + 0.5
 
 
-def band_candidates(
-    mask: BoolArray, core: FloatArray, inner: float, outer: float
-) -> Candidates:
+def band_candidates(mask: BoolArray, core: FloatArray, inner: float, outer: float) -> Candidates:
     """Cells around the outline of the mask, ordered along it.
 
     Args:
@@ -54,7 +52,7 @@ def band_candidates(
     outside = ndimage.distance_transform_edt(~mask)
     inside = ndimage.distance_transform_edt(mask)
     chosen = np.where(mask, inside <= inner, outside <= outer)
-    nodes = np.argwhere(chosen) + 0.5
+    nodes: FloatArray = np.argwhere(chosen).astype(np.float64) + 0.5
     return _ordered(nodes, trace_outline(mask), core)
 
 
@@ -74,14 +72,14 @@ def refined_candidates(polygon: FloatArray, core: FloatArray, reach: float) -> C
     box = np.stack(np.meshgrid(steps, steps, indexing="ij"), axis=-1).reshape(-1, 2)
     near = np.floor(polygon)[:, None, :] + box[None] + 0.5
     nodes = near.reshape(-1, 2)
-    distance, corner = cKDTree(polygon).query(nodes)
+    distance, corner = (np.asarray(found) for found in cKDTree(polygon).query(nodes))
     nodes, kept = np.unique(nodes[distance <= reach], axis=0, return_index=True)
     corner = corner[distance <= reach][kept]
     return _sorted(nodes, corner.astype(float), float(len(polygon)), polygon, corner, core)
 
 
 def _ordered(nodes: FloatArray, outline: FloatArray, core: FloatArray) -> Candidates:
-    _, nearest = cKDTree(outline).query(nodes)
+    nearest = np.asarray(cKDTree(outline).query(nodes)[1])
     return _sorted(nodes, nearest.astype(float), float(len(outline)), outline, nearest, core)
 
 

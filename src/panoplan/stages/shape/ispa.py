@@ -63,9 +63,7 @@ def room_shape(
             core_ch = grid.to_walk(core_of(mask)[None])
         core = grid.to_grid(core_ch)[0]
         if number == 0:
-            candidates = band_candidates(
-                mask, core, config.band_in_cells, config.band_out_cells
-            )
+            candidates = band_candidates(mask, core, config.band_in_cells, config.band_out_cells)
         else:
             candidates = refined_candidates(grid.to_grid(rounds[-1]), core, config.refine_cells)
         corners = _shortest(
