@@ -198,7 +198,7 @@ class RoomsConfig:
         paper="running_max",
     )
     beyond_weight: float = _setting(
-        0.1,
+        0.3,
         "Weight of a view's evidence against a cell that lies farther than `wall_band_ch` beyond "
         "its boundary: hidden, hence little against.",
         low=0.0,

@@ -1,0 +1,78 @@
+"""TUM trajectories: `label tx ty tz qx qy qz qw` a line, camera-to-world."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import numpy as np
+
+from panoplan.errors import InputError
+from panoplan.formats.atomic import read_text, write_text
+from panoplan.types.arrays import FloatArray
+from panoplan.types.pose import Trajectory
+
+_LIMIT = 256 * 2**20
+
+
+def read_rows(path: Path) -> tuple[tuple[str, ...], FloatArray]:
+    """Labels and numbers of a pose file.
+
+    Args:
+        path: text; fields separated by space, comma or tab, `#` begins a comment.
+
+    Returns:
+        N labels, and (N, 7) tx ty tz qx qy qz qw as written, NaN included.
+
+    Raises:
+        InputError: missing, empty, a row without eight fields, or a field that is no number.
+    """
+    labels, rows = [], []
+    for number, line in enumerate(read_text(path, _LIMIT).splitlines(), start=1):
+        fields = [f for f in re.split(r"[\s,]+", line.split("#", 1)[0]) if f]
+        if not fields:
+            continue
+        if len(fields) != 8:
+            raise InputError(
+                f"{path}:{number}", f"{len(fields)} fields", "label tx ty tz qx qy qz qw"
+            )
+        try:
+            rows.append([float(field) for field in fields[1:]])
+        except ValueError:
+            raise InputError(f"{path}:{number}", repr(line[:60]), "seven numbers") from None
+        labels.append(fields[0])
+    if not rows:
+        raise InputError(path, "no pose", "at least one row")
+    return tuple(labels), np.array(rows)
+
+
+def read_tum(path: Path) -> Trajectory:
+    """Reads a TUM trajectory.
+
+    Raises:
+        InputError: as `read_rows`; a pose that is not finite or whose quaternion is not of unit
+            length; a label that stands twice.
+    """
+    labels, rows = read_rows(path)
+    seen: set[str] = set()
+    for label, row in zip(labels, rows, strict=True):
+        if label in seen:
+            raise InputError(path, f"the label {label} twice", "one pose a label")
+        seen.add(label)
+        if not np.isfinite(row).all():
+            raise InputError(f"{path}, pose {label}", "NaN or infinity", "finite numbers")
+    try:
+        return Trajectory.from_quaternions(labels, rows[:, :3], rows[:, 3:])
+    except InputError as error:
+        raise InputError(f"{path}, {error.source}", error.found, error.expected) from None
+
+
+def write_tum(path: Path, trajectory: Trajectory) -> None:
+    """Writes a TUM trajectory."""
+    from scipy.spatial.transform import Rotation
+
+    quaternions = Rotation.from_matrix(trajectory.rotations).as_quat()
+    lines = ["# label tx ty tz qx qy qz qw (camera-to-world; x right, y down, z forward)"]
+    for label, t, q in zip(trajectory.labels, trajectory.translations, quaternions, strict=True):
+        lines.append(" ".join([label, *(f"{value:.9f}" for value in (*t, *q))]))
+    write_text(path, "\n".join(lines) + "\n")
