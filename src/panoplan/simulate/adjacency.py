@@ -67,11 +67,9 @@ def shared_walls(
     found: list[SharedWall] = []
     for i in range(len(polygons)):
         near = np.all((low <= high[i] + max_thickness) & (high >= low[i] - max_thickness), axis=1)
-        for j in np.flatnonzero(near):
+        for j in np.flatnonzero(near).tolist():
             if j > i:
-                found += _between(
-                    (i, int(j)), polygons[i], polygons[j], max_thickness, min_length
-                )
+                found += _between((i, j), polygons[i], polygons[j], max_thickness, min_length)
     return found
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Literal
 
 import numpy as np
@@ -83,7 +84,7 @@ class Passage:
     def outward(self) -> FloatArray:
         """(2,) unit normal from the first room to the second."""
         along = self.faces[0, 1] - self.faces[0, 0]
-        return np.array([along[1], -along[0]]) / np.hypot(*along)
+        return np.asarray(np.array([along[1], -along[0]]) / np.hypot(*along))
 
     @property
     def area(self) -> FloatArray:
@@ -146,9 +147,7 @@ class Building:
     def neighbours(self, room: int) -> list[tuple[int, int]]:
         """Where one gets to from a room: (index of the passage, index of the room behind it)."""
         return [
-            (k, p.rooms[1 - p.side(room)])
-            for k, p in enumerate(self.passages)
-            if room in p.rooms
+            (k, p.rooms[1 - p.side(room)]) for k, p in enumerate(self.passages) if room in p.rooms
         ]
 
     def reachable(self, start: int = 0) -> set[int]:
@@ -356,7 +355,7 @@ def make_corridor_building(n_rooms: int, seed: int, *, opening_share: float = 0.
     ends = np.linspace(0, length, parts + 1)
     corridor = [
         rectangle(b - a - thick * (k + 1 < parts), wide, (a, 0.0))
-        for k, (a, b) in enumerate(zip(ends[:-1], ends[1:], strict=True))
+        for k, (a, b) in enumerate(pairwise(ends))
     ]
     ceiling = float(rng.uniform(2.4, 3.0))
     rooms = [InteriorRoom("corridor", p, ceiling) for p in corridor]
@@ -378,14 +377,12 @@ def _row(rng: np.random.Generator, count: int, face: float, *, upwards: bool) ->
     return row
 
 
-def _size(
-    rng: np.random.Generator, rooms: int | None, area_m2: float | None
-) -> tuple[int, float]:
+def _size(rng: np.random.Generator, rooms: int | None, area_m2: float | None) -> tuple[int, float]:
     """Number of rooms and inner area of the footprint, at 9-24 m² a room."""
     while True:
         count = rooms or int(np.clip(np.rint(rng.normal(7, 1.4)), 5, 9))
         area = area_m2 or float(rng.normal(112, 48))
-        if 58 <= area <= 220 and 8 <= area / count <= 26 or (rooms and area_m2):
+        if (58 <= area <= 220 and 8 <= area / count <= 26) or (rooms and area_m2):
             return count, area
 
 
@@ -425,7 +422,7 @@ def _flat_rooms(
         living, rest = _end_room(rng, rest, share, skewed)
         polygons.append(("living", living))
         left -= 1
-    closets = int(min(rng.integers(0, 3), left - 2))
+    closets = min(int(rng.integers(0, 3)), left - 2)
     blocks = _corridor_and_bands(rng, rest, left - closets, skewed)
     if blocks is None:
         return None
@@ -526,7 +523,9 @@ def _band(
     widths = list(2.0 + spare * rng.dirichlet(np.full(count, 3.0)))
     if through is not None:
         widths.insert(branch, branch_width)
-    rooms, branches, x = [], [], low
+    rooms: list[FloatArray] = []
+    branches: list[FloatArray] = []
+    x = low
     rest, rest_through = band, band if through is None else through
     for k, width in enumerate(widths):
         piece, piece_through = rest, rest_through
@@ -598,7 +597,7 @@ def _without_straight_vertices(ring: FloatArray) -> FloatArray:
     before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
     cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
     lengths = np.hypot(*before.T) * np.hypot(*after.T)
-    return ring[np.abs(cross) > 1e-6 * lengths]
+    return np.asarray(ring[np.abs(cross) > 1e-6 * lengths])
 
 
 def _passages(

@@ -1,0 +1,380 @@
+"""How a layout network errs: noise calibrated on real panoramas.
+
+All figures of `MEASURED` come from 69 real panoramas of two homes with a real layout network's
+predictions, compared with human annotation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+
+from panoplan.simulate.views import View
+from panoplan.types.arrays import BoolArray, FloatArray, IntArray
+from panoplan.types.layout import Layout
+
+GROSS_M = 0.3
+"""A range is grossly wrong where it errs by more than this and `GROSS_SHARE` of the range."""
+GROSS_SHARE = 0.15
+
+_REFERENCE_WIDTH = 1024
+_STEEPEST_RAD, _SHALLOWEST_RAD = np.deg2rad(-86.0), np.deg2rad(-1.5)
+_LEAST_CORE = 0.3
+_CEILING_CORRELATION = 0.6
+_MEDIAN_Z = 0.6744897501960817
+_PERCENTILE_90_Z = 1.2815515655446004
+
+
+@dataclass(frozen=True)
+class DistanceBin:
+    """Errors of the floor boundary at one range of true distance.
+
+    Attributes:
+        from_m: the bin's lower end; it reaches to that of the next.
+        bias_deg: median error of the elevation, predicted less true.
+        sigma_deg: MAD-sigma of the elevation's error, all causes together.
+        tail: h ≥ 0 of Tukey's g-and-h family, by which the errors' tails are heavier than a
+            Gaussian's: error = sigma·z·exp(h·z²/2).
+    """
+
+    from_m: float
+    bias_deg: float
+    sigma_deg: float
+    tail: float
+
+
+@dataclass(frozen=True)
+class Measured:
+    """What was measured on real panoramas.
+
+    Attributes:
+        from_m: lower ends of the distance bins; the last one ends at 6 m.
+        bias_deg: median error of the elevation in each.
+        sigma_deg: MAD-sigma of that error in each.
+        percentile_90_m: 90th percentile of the absolute error of the range in each.
+        gross_share: share of columns that are grossly wrong in each.
+        lags: columns of 1024.
+        autocorrelation: of the residuals along the columns at those lags.
+        scale_std: standard deviation of a panorama's common error of scale.
+        scale_mad_sigma: its MAD-sigma.
+        corner_recall: (tolerance in columns of 1024, share of true corners found within it).
+        corner_precision: (tolerance, share of the found corners that are true).
+        leak_median_m: median depth of a leak.
+        leak_percentile_90_m: 90th percentile of that depth.
+    """
+
+    from_m: tuple[float, ...] = (0.0, 1.0, 1.5, 2.0, 3.0, 4.0)
+    bias_deg: tuple[float, ...] = (-0.03, -0.22, -0.09, 0.07, 0.16, 0.08)
+    sigma_deg: tuple[float, ...] = (0.89, 0.67, 0.48, 0.58, 0.70, 0.82)
+    percentile_90_m: tuple[float, ...] = (0.17, 0.12, 0.10, 0.19, 0.29, 1.84)
+    gross_share: tuple[float, ...] = (0.075, 0.020, 0.028, 0.053, 0.042, 0.171)
+    lags: tuple[int, ...] = (1, 4, 8, 16, 32, 64)
+    autocorrelation: tuple[float, ...] = (0.98, 0.94, 0.88, 0.78, 0.62, 0.43)
+    scale_std: float = 0.028
+    scale_mad_sigma: float = 0.015
+    corner_recall: tuple[tuple[int, float], ...] = ((5, 0.58), (10, 0.66), (20, 0.71))
+    corner_precision: tuple[tuple[int, float], ...] = ((5, 0.68), (10, 0.77), (20, 0.83))
+    leak_median_m: float = 0.74
+    leak_percentile_90_m: float = 3.3
+
+
+MEASURED = Measured()
+
+_TAILS = (1.19, 0.81, 0.63, 0.61, 0.33, 0.75)
+_BEYOND_6_M = 1.25
+_BEYOND_6_M_TAIL = 0.5
+
+
+def _bins(*, biased: bool, heavy: bool) -> tuple[DistanceBin, ...]:
+    last = MEASURED.sigma_deg[-1] * _BEYOND_6_M
+    columns = zip(
+        (*MEASURED.from_m, 6.0),
+        (*MEASURED.bias_deg, MEASURED.bias_deg[-1]),
+        (*MEASURED.sigma_deg, last),
+        (*_TAILS, _BEYOND_6_M_TAIL),
+        strict=True,
+    )
+    return tuple(
+        DistanceBin(low, bias if biased else 0.0, sigma, tail if heavy else 0.0)
+        for low, bias, sigma, tail in columns
+    )
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """How layouts and poses differ from the truth.
+
+    Attributes:
+        name: of the grade.
+        bins: errors of the boundary by distance, nearest first; empty: none.
+        scale_std: standard deviation of a panorama's common factor on its ranges.
+        scale_outlier_share: share of panoramas whose factor is drawn from a wider Gaussian, so
+            that it has heavy tails at the same standard deviation.
+        scale_core_std: standard deviation of the factor in the other panoramas.
+        gross_share: share of columns, in contiguous stretches, that are made grossly wrong on
+            top of the bins' tails.
+        gross_columns: mean length of a stretch, columns of 1024.
+        height_jitter: standard deviation of a keyframe's true camera height relative to the
+            nominal one, unknown to the odometry.
+        occluder_share: share of the views where furniture hides part of the boundary.
+        door_leak: probability that the boundary goes through a door.
+        opening_leak: probability that it goes through an opening.
+        leak_median_m: median depth of the leaks, lognormal.
+        leak_percentile_90_m: 90th percentile of that depth.
+        corner_recall: share of true corners found, none missed where 1.
+        corner_precision: share of the corners told that are true.
+        corner_spread: (largest error in columns of 1024, share of found corners within it).
+        drift_m: largest error of the odometry's position over the walk, metres.
+        drift_deg: typical error of the odometry's heading at the end of the walk.
+    """
+
+    name: str
+    bins: tuple[DistanceBin, ...] = ()
+    scale_std: float = 0.0
+    scale_outlier_share: float = 0.0
+    scale_core_std: float = 0.0
+    gross_share: float = 0.0
+    gross_columns: float = 30.0
+    height_jitter: float = 0.0
+    occluder_share: float = 0.0
+    door_leak: float = 0.0
+    opening_leak: float = 0.0
+    leak_median_m: float = MEASURED.leak_median_m
+    leak_percentile_90_m: float = MEASURED.leak_percentile_90_m
+    corner_recall: float = 1.0
+    corner_precision: float = 1.0
+    corner_spread: tuple[tuple[int, float], ...] = ()
+    drift_m: float = 0.0
+    drift_deg: float = 0.0
+
+
+def _corner_spread() -> tuple[tuple[int, float], ...]:
+    most = MEASURED.corner_recall[-1][1]
+    return tuple((columns, share / most) for columns, share in MEASURED.corner_recall)
+
+
+EXACT = NoiseModel("exact")
+MILD = NoiseModel(
+    "mild",
+    bins=_bins(biased=False, heavy=False),
+    scale_std=0.015,
+    scale_core_std=0.015,
+    gross_share=0.02,
+    corner_recall=MEASURED.corner_recall[-1][1],
+    corner_precision=MEASURED.corner_precision[-1][1],
+    corner_spread=_corner_spread(),
+    drift_m=0.05,
+    drift_deg=0.1,
+)
+HARD = NoiseModel(
+    "hard",
+    bins=_bins(biased=True, heavy=True),
+    scale_std=MEASURED.scale_std,
+    scale_outlier_share=0.18,
+    scale_core_std=0.0133,
+    height_jitter=0.03,
+    occluder_share=0.3,
+    door_leak=0.08,
+    opening_leak=0.38,
+    corner_recall=MEASURED.corner_recall[-1][1],
+    corner_precision=MEASURED.corner_precision[-1][1],
+    corner_spread=_corner_spread(),
+    drift_m=0.4,
+    drift_deg=1.0,
+)
+GRADES = {model.name: model for model in (EXACT, MILD, HARD)}
+
+
+def draw_leaks(
+    doors: Iterable[int], openings: Iterable[int], model: NoiseModel, rng: np.random.Generator
+) -> dict[int, float]:
+    """Which passages of a room a view goes through, and how deep.
+
+    Args:
+        doors: indices of the room's doors.
+        openings: indices of its openings.
+        model: the grade.
+        rng: of the draw.
+
+    Returns:
+        Depth in metres square to the wall, by index of the passage.
+    """
+    spread = np.log(model.leak_percentile_90_m / model.leak_median_m) / _PERCENTILE_90_Z
+    leaks = {}
+    for indices, share in ((doors, model.door_leak), (openings, model.opening_leak)):
+        for k in indices:
+            chance, depth = rng.random(), rng.standard_normal()
+            if chance < share:
+                leaks[k] = float(model.leak_median_m * np.exp(spread * depth))
+    return leaks
+
+
+def scale_factor(model: NoiseModel, rng: np.random.Generator) -> float:
+    """A panorama's common factor on its ranges, around 1."""
+    outlier, z = rng.random() < model.scale_outlier_share, float(rng.standard_normal())
+    if not outlier:
+        return float(np.exp(model.scale_core_std * z))
+    share = model.scale_outlier_share
+    wide = (model.scale_std**2 - (1 - share) * model.scale_core_std**2) / share
+    return float(np.exp(np.sqrt(wide) * z))
+
+
+def noisy_layout(view: View, model: NoiseModel, rng: np.random.Generator) -> Layout:
+    """What a layout network tells of a view.
+
+    Args:
+        view: the truth, leaks included.
+        model: the grade.
+        rng: of all errors.
+
+    Returns:
+        Floor and ceiling boundary and corners with the errors of the model. The ceiling's
+        errors are not measured: they are the floor's core, partly independent.
+    """
+    if not model.bins:
+        return view.layout
+    width = len(view.range_m)
+    ranges, corners = view.range_m, view.corners
+    if rng.random() < model.occluder_share:
+        ranges, edges = _occluded(ranges, rng)
+        corners = np.append(corners, edges)
+    factor = scale_factor(model, rng) * (1 + model.height_jitter * rng.standard_normal())
+    field = column_field(width, rng)
+    elevation = -np.arctan2(view.camera_height_m, ranges)
+    bias, core, tail = _errors_at(model, view.range_m, elevation)
+    error = bias + core * field * np.exp(tail * field**2 / 2)
+    elevation = -np.arctan2(view.camera_height_m, ranges * factor) + error
+    elevation = np.clip(elevation, _STEEPEST_RAD, _SHALLOWEST_RAD)
+    elevation = _with_gross(elevation, view, model, rng)
+    own = column_field(width, rng)
+    shared = _CEILING_CORRELATION
+    ceiling = view.ceiling_boundary - core * (shared * field + np.sqrt(1 - shared**2) * own)
+    return Layout(elevation, ceiling, noisy_corners(corners, width, model, rng))
+
+
+def column_field(width: int, rng: np.random.Generator) -> FloatArray:
+    """Gaussian noise around the panorama with the measured correlation along the columns.
+
+    Args:
+        width: number of columns W, which go once around.
+        rng: of the noise.
+
+    Returns:
+        (W,) of unit variance.
+    """
+    white = np.fft.rfft(rng.standard_normal(width))
+    return np.asarray(np.fft.irfft(white * _amplitudes(width), n=width))
+
+
+def correlation(lag: FloatArray) -> FloatArray:
+    """Correlation of the column noise at lags in columns of 1024: fitted to the measured one."""
+    near, far = 45.0, 110.0
+    return np.asarray(0.008 * (lag == 0) + 0.492 * np.exp(-lag / near) + 0.5 * np.exp(-lag / far))
+
+
+@lru_cache(maxsize=8)
+def _amplitudes(width: int) -> FloatArray:
+    column = np.arange(width)
+    lag = np.minimum(column, width - column) * (_REFERENCE_WIDTH / width)
+    spectrum = np.fft.rfft(correlation(lag)).real
+    return np.asarray(np.sqrt(np.maximum(spectrum, 0.0)))
+
+
+def _errors_at(
+    model: NoiseModel, range_m: FloatArray, elevation: FloatArray
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Bias and core sigma in rad, and tail, of each column.
+
+    A common factor on the ranges already errs the elevation by sin φ cos φ a unit; the columns'
+    own noise is what is missing to the measured sigma.
+    """
+    edges = np.array([b.from_m for b in model.bins])
+    table = np.array([[b.bias_deg, b.sigma_deg, b.tail] for b in model.bins])
+    bias, sigma, tail = table[np.searchsorted(edges, range_m, side="right") - 1].T
+    bias, sigma = np.deg2rad(bias), np.deg2rad(sigma)
+    common = np.sin(elevation) * np.cos(elevation) * model.scale_core_std
+    core = np.sqrt(np.maximum(sigma**2 - common**2, (_LEAST_CORE * sigma) ** 2))
+    median = np.exp(tail * _MEDIAN_Z**2 / 2)
+    return bias, core / median, tail
+
+
+def _occluded(ranges: FloatArray, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+    """Furniture on the boundary: it moves closer over one to three stretches.
+
+    Returns:
+        The ranges and the columns where the stretches begin and end.
+    """
+    width = len(ranges)
+    out = ranges.copy()
+    edges = []
+    for _ in range(int(rng.integers(1, 4))):
+        length = int(width * rng.uniform(8, 40) / 360)
+        start = int(rng.integers(width))
+        columns = (start + np.arange(length)) % width
+        depth = rng.uniform(0.35, 0.9)
+        closest = np.minimum(out[columns], np.maximum(0.4 * ranges[columns], 0.4))
+        out[columns] = np.maximum(ranges[columns] - depth, closest)
+        edges += [start, (start + length) % width]
+    return out, np.array(edges, dtype=np.float64)
+
+
+def _stretches(width: int, model: NoiseModel, rng: np.random.Generator) -> list[IntArray]:
+    mean = model.gross_columns * width / _REFERENCE_WIDTH
+    count = rng.poisson(model.gross_share * width / mean)
+    found = []
+    for _ in range(count):
+        length = int(np.ceil(rng.exponential(mean)))
+        found.append((int(rng.integers(width)) + np.arange(min(length, width))) % width)
+    return found
+
+
+def _with_gross(
+    elevation: FloatArray, view: View, model: NoiseModel, rng: np.random.Generator
+) -> FloatArray:
+    """Makes stretches of the boundary grossly wrong: too near or too far."""
+    out = elevation.copy()
+    for columns in _stretches(len(elevation), model, rng):
+        true = view.range_m[columns]
+        told = view.camera_height_m / np.tan(-elevation[columns])
+        size = 1.5 + rng.exponential(1.0)
+        error = size * np.maximum(GROSS_M, GROSS_SHARE * true)
+        nearer = rng.random() < 0.5 and bool(np.all(told - error > 0.4))
+        wrong = np.maximum(told + (-error if nearer else error), 0.2)
+        out[columns] = -np.arctan2(view.camera_height_m, wrong)
+    return out
+
+
+def noisy_corners(
+    corners: FloatArray, width: int, model: NoiseModel, rng: np.random.Generator
+) -> FloatArray:
+    """Corners as a network finds them: some missed, some made up, the rest a little off.
+
+    Args:
+        corners: (K,) true columns.
+        width: number of columns W.
+        model: the grade.
+        rng: of the draw.
+
+    Returns:
+        (M,) sorted columns in [0, W).
+    """
+    kept = corners[rng.random(len(corners)) < model.corner_recall]
+    if model.corner_spread:
+        limits = np.array([0, *(columns for columns, _ in model.corner_spread)], dtype=np.float64)
+        shares = np.array([0.0, *(share for _, share in model.corner_spread)])
+        off = np.interp(rng.random(len(kept)), shares, limits) * width / _REFERENCE_WIDTH
+        kept = kept + off * rng.choice([-1.0, 1.0], len(kept))
+    hits = model.corner_recall * len(corners)
+    made_up = rng.uniform(0, width, rng.poisson(hits * (1 / model.corner_precision - 1)))
+    if len(corners):
+        gap = np.abs((made_up[:, None] - corners + width / 2) % width - width / 2).min(axis=1)
+        made_up = made_up[gap > 20 * width / _REFERENCE_WIDTH]
+    return np.sort(np.concatenate([kept, made_up]) % width)
+
+
+def gross(told_m: FloatArray, true_m: FloatArray) -> BoolArray:
+    """Which told ranges are grossly wrong: by more than 0.3 m and more than 15 %."""
+    return np.asarray(np.abs(told_m - true_m) > np.maximum(GROSS_M, GROSS_SHARE * true_m))

@@ -1,0 +1,281 @@
+"""Whole scenes: what the method is given, and apart from it what is true."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from panoplan.errors import InputError
+from panoplan.geometry.rigid import heading_of
+from panoplan.simulate.buildings import Building, make_flat
+from panoplan.simulate.noise import GRADES, NoiseModel, draw_leaks, noisy_layout
+from panoplan.simulate.odometry import drifted, in_units
+from panoplan.simulate.views import ViewCaster, tilted
+from panoplan.simulate.walks import Walk, about_y, stills, walk
+from panoplan.types.arrays import FloatArray
+from panoplan.types.keyframe import Keyframe
+from panoplan.types.layout import Layout
+from panoplan.types.pose import Pose, Trajectory
+from panoplan.types.truth import GroundTruth, TruePlan, TrueRoom
+
+Grade = Literal["exact", "mild", "hard"]
+
+
+@dataclass(frozen=True, eq=False)
+class SimulatedScene:
+    """A simulated recording and its truth.
+
+    Attributes:
+        name: of the scene.
+        keyframes: in the order of the walk: odometry poses in units of `metres_per_su` metres,
+            which agree with the true ones at the first keyframe, and noisy layouts.
+        truth: the true plan and the true poses, metres, in one frame.
+        camera_height_m: nominal height of the camera above the floor.
+        metres_per_su: metres a trajectory unit.
+        noise: the grade it was made with.
+        building: what was walked through.
+        keyframe_rooms: index of the room each keyframe's view is of.
+    """
+
+    name: str
+    keyframes: tuple[Keyframe, ...]
+    truth: GroundTruth
+    camera_height_m: float
+    metres_per_su: float
+    noise: NoiseModel
+    building: Building
+    keyframe_rooms: tuple[int, ...]
+
+    @property
+    def ch_per_su(self) -> float:
+        """Camera heights a trajectory unit: what scale recovery should find."""
+        return self.metres_per_su / self.camera_height_m
+
+    @property
+    def odometry(self) -> Trajectory:
+        """The keyframes' poses."""
+        return Trajectory(
+            tuple(k.id for k in self.keyframes),
+            np.array([k.pose.rotation for k in self.keyframes]),
+            np.array([k.pose.translation for k in self.keyframes]),
+        )
+
+
+def simulate_flat(
+    seed: int,
+    grade: Grade | NoiseModel = "mild",
+    *,
+    stills: bool = False,
+    rooms: int | None = None,
+    skewed: bool | None = None,
+    opening_share: float = 0.1,
+    step_m: float = 0.4,
+    keyframes_per_room: int | None = None,
+    metres_per_su: float | None = None,
+    tilt_deg: float = 0.0,
+) -> SimulatedScene:
+    """A walk through a made-up flat.
+
+    Args:
+        seed: the same seed gives the same flat, the same way through it and the same noise; the
+            flat and the way do not depend on the grade.
+        grade: "exact", "mild", "hard" or a noise model.
+        stills: sparse photos instead of a walk.
+        rooms: how many, 5-9; drawn where None.
+        skewed: whether some walls are not at right angles; drawn where None.
+        opening_share: probability that a passage is an opening.
+        step_m: mean way between keyframes, metres.
+        keyframes_per_room: at least about so many a room; by the room's size where None.
+        metres_per_su: metres a trajectory unit; log-uniform over 0.1-10 where None.
+        tilt_deg: standard deviation of the camera's pitch and roll.
+
+    Returns:
+        The scene.
+    """
+    return simulate(
+        make_flat(seed, rooms=rooms, skewed=skewed, opening_share=opening_share),
+        seed,
+        grade,
+        as_stills=stills,
+        step_m=step_m,
+        keyframes_per_room=keyframes_per_room,
+        metres_per_su=metres_per_su,
+        tilt_deg=tilt_deg,
+    )
+
+
+def simulate(
+    building: Building,
+    seed: int,
+    grade: Grade | NoiseModel = "mild",
+    *,
+    as_stills: bool = False,
+    step_m: float = 0.4,
+    keyframes_per_room: int | None = None,
+    metres_per_su: float | None = None,
+    tilt_deg: float = 0.0,
+    width: int = 1024,
+) -> SimulatedScene:
+    """A walk through a building.
+
+    Args:
+        building: connected.
+        seed: of the way, the noise and the unit.
+        grade: "exact", "mild", "hard" or a noise model.
+        as_stills: sparse photos instead of a walk.
+        step_m: mean way between keyframes, metres.
+        keyframes_per_room: at least about so many a room; by the room's size where None.
+        metres_per_su: metres a trajectory unit; log-uniform over 0.1-10 where None.
+        tilt_deg: standard deviation of the camera's pitch and roll.
+        width: number of columns of the layouts.
+
+    Returns:
+        The scene.
+
+    Raises:
+        InputError: an unknown grade, a unit that is not positive, or a building that cannot be
+            walked.
+    """
+    model = _model(grade)
+    way_rng, unit_rng, noise_rng, drift_rng = (
+        np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4)
+    )
+    unit = float(10 ** unit_rng.uniform(-1, 1)) if metres_per_su is None else metres_per_su
+    if not (np.isfinite(unit) and unit > 0):
+        raise InputError("metres_per_su", str(unit), "a positive number")
+    if as_stills:
+        way = stills(building, way_rng)
+    else:
+        way = walk(
+            building,
+            way_rng,
+            step_m=step_m,
+            keyframes_per_room=keyframes_per_room,
+            tilt_deg=tilt_deg,
+        )
+    return recorded(building, way, model, unit, noise_rng, drift_rng, width=width)
+
+
+def recorded(
+    building: Building,
+    way: Walk,
+    model: NoiseModel,
+    metres_per_su: float,
+    noise_rng: np.random.Generator,
+    drift_rng: np.random.Generator,
+    *,
+    width: int = 1024,
+) -> SimulatedScene:
+    """The scene that a given walk records.
+
+    Args:
+        building: where it goes.
+        way: true poses.
+        model: the grade.
+        metres_per_su: metres a trajectory unit.
+        noise_rng: of the layouts' errors.
+        drift_rng: of the odometry's.
+        width: number of columns of the layouts.
+
+    Returns:
+        The scene.
+    """
+    odometry = drifted(way.trajectory, model.drift_m, model.drift_deg, drift_rng)
+    odometry = in_units(odometry, metres_per_su)
+    caster = ViewCaster(building)
+    rngs = noise_rng.spawn(len(way.trajectory))
+    keyframes = tuple(
+        Keyframe(label, odometry[k], _layout(caster, way, k, model, rngs[k], width))
+        for k, label in enumerate(way.trajectory.labels)
+    )
+    kind = "walk" if len(way.path) != len(way.trajectory) else "stills"
+    return SimulatedScene(
+        name=f"{building.name}_{kind}_{model.name}",
+        keyframes=keyframes,
+        truth=GroundTruth(true_plan(building, way.camera_height_m), way.trajectory),
+        camera_height_m=way.camera_height_m,
+        metres_per_su=metres_per_su,
+        noise=model,
+        building=building,
+        keyframe_rooms=tuple(int(k) for k in way.rooms),
+    )
+
+
+def true_plan(building: Building, camera_height_m: float | None = None) -> TruePlan:
+    """The true plan of a building.
+
+    Rooms end at openings, as the layouts see them: `rooms` and `rooms_partial` are the same.
+    Doors and openings are listed with both faces of their wall.
+
+    Args:
+        building: in the plan frame.
+        camera_height_m: nominal, or None.
+
+    Returns:
+        The plan.
+    """
+    rooms = tuple(
+        TrueRoom(f"room_{k + 1:02d}", room.label, room.polygon)
+        for k, room in enumerate(building.rooms)
+    )
+    longest = max(
+        (edge for r in building.rooms for edge in np.roll(r.polygon, -1, axis=0) - r.polygon),
+        key=lambda edge: float(np.hypot(*edge)),
+    )
+    return TruePlan(
+        rooms=rooms,
+        rooms_partial=rooms,
+        doors=tuple(face for p in building.doors for face in p.faces),
+        openings=tuple(face for p in building.openings for face in p.faces),
+        windows=tuple(w.segment for w in building.windows),
+        axis=longest / np.hypot(*longest),
+        camera_height_m=camera_height_m,
+    )
+
+
+def _model(grade: Grade | NoiseModel) -> NoiseModel:
+    if isinstance(grade, NoiseModel):
+        return grade
+    if grade not in GRADES:
+        raise InputError("grade", repr(grade), " | ".join(GRADES))
+    return GRADES[grade]
+
+
+def _layout(
+    caster: ViewCaster,
+    way: Walk,
+    index: int,
+    model: NoiseModel,
+    rng: np.random.Generator,
+    width: int,
+) -> Layout:
+    """The layout of one keyframe."""
+    building, room = caster.building, int(way.rooms[index])
+    pose = way.trajectory[index]
+    behind = [k for k, _ in building.neighbours(room)]
+    leaks = draw_leaks(
+        [k for k in behind if building.passages[k].kind == "door"],
+        [k for k in behind if building.passages[k].kind == "opening"],
+        model,
+        rng,
+    )
+    heading = heading_of(pose.rotation)
+    view = caster.view(
+        pose.translation[[0, 2]],
+        heading,
+        way.camera_height_m - float(pose.translation[1]),
+        width=width,
+        leaks=leaks,
+        room=room,
+    )
+    layout = noisy_layout(view, model, rng)
+    level_from_cam = _level_from_cam(pose, heading)
+    if np.abs(level_from_cam - np.eye(3)).max() < 1e-12:
+        return layout
+    return tilted(layout, level_from_cam)
+
+
+def _level_from_cam(pose: Pose, heading: float) -> FloatArray:
+    return np.asarray(about_y(np.array([-heading]))[0] @ pose.rotation)

@@ -1,0 +1,382 @@
+"""Walks with a camera through a building, and tours of still photos."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+import shapely
+from scipy.ndimage import gaussian_filter1d
+
+from panoplan.errors import InputError
+from panoplan.simulate.buildings import Building, Passage
+from panoplan.types.arrays import FloatArray, IntArray
+from panoplan.types.pose import Trajectory
+
+_CLEARANCES_M = (0.35, 0.3, 0.25, 0.2, 0.15, 0.1)
+_WAYPOINT_CLEARANCES_M = (0.5, 0.4, 0.3, 0.2, 0.1)
+_TURN_M = 0.3
+_DENSE_M = 0.02
+_HEADING_SMOOTHING_M = 0.35
+
+
+@dataclass(frozen=True, eq=False)
+class Walk:
+    """Where the camera truly is at each keyframe.
+
+    World: metres, (x, z) the building's plan, y down, y = 0 at the nominal camera height.
+
+    Attributes:
+        trajectory: world_from_cam of every keyframe; labels are zero-padded numbers from 0.
+        rooms: (N,) index of the room each keyframe stands in or, in a doorway, looks into.
+        camera_height_m: nominal height above the floor; a keyframe's is this less its y.
+        path: (P, 2) plan, the way walked, densely; the camera's positions for stills.
+    """
+
+    trajectory: Trajectory
+    rooms: IntArray
+    camera_height_m: float
+    path: FloatArray
+
+
+def walk(
+    building: Building,
+    rng: np.random.Generator,
+    *,
+    step_m: float = 0.4,
+    keyframes_per_room: int | None = None,
+    start: int | None = None,
+    camera_height_m: float | None = None,
+    tilt_deg: float = 0.0,
+) -> Walk:
+    """A person walks every room, through the doors, and back through some of them.
+
+    Rooms are visited depth first; each has a few waypoints ≥ 0.5 m from its walls where it is
+    wide enough. Doors are crossed in their middle at a right angle. The camera looks where the
+    person goes.
+
+    Args:
+        building: connected.
+        rng: of all choices.
+        step_m: mean way between keyframes, metres; single steps vary by ± 25 %.
+        keyframes_per_room: at least about so many keyframes in each room; by its size where
+            None.
+        start: index of the first room; drawn where None.
+        camera_height_m: nominal height; drawn from 1.4-1.7 m where None.
+        tilt_deg: standard deviation of pitch and of roll, which change slowly.
+
+    Returns:
+        The walk.
+
+    Raises:
+        InputError: a room cannot be reached or is too narrow to walk in.
+    """
+    height = _camera_height(rng, camera_height_m)
+    first = int(rng.integers(len(building.rooms))) if start is None else start
+    corners = np.array(_route(building, rng, first, step_m, keyframes_per_room))
+    path = _resampled(_rounded(corners), _DENSE_M)
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    at = _strides(rng, float(arc[-1]), step_m)
+    headings = _headings(path)
+    wobble = np.deg2rad(8.0) * _smooth_noise(rng, len(at), 12.0)
+    beta = np.interp(at, arc, headings) + wobble
+    positions = np.stack([np.interp(at, arc, path[:, k]) for k in range(2)], axis=1)
+    bob = 0.015 * _smooth_noise(rng, len(at), 1.0)
+    tilt = np.deg2rad(tilt_deg) * np.stack([_smooth_noise(rng, len(at), 3.0) for _ in range(2)], 1)
+    return _walk(building, positions, bob, beta, tilt, height, path)
+
+
+def stills(
+    building: Building,
+    rng: np.random.Generator,
+    *,
+    per_room: tuple[int, int] = (1, 3),
+    start: int | None = None,
+    camera_height_m: float | None = None,
+) -> Walk:
+    """Sparse photos, a few in each room, in the order of a walk, looking anywhere.
+
+    Args:
+        building: connected.
+        rng: of all choices.
+        per_room: fewest and most photos a room.
+        start: index of the first room; drawn where None.
+        camera_height_m: nominal height; drawn from 1.4-1.7 m where None.
+
+    Returns:
+        The tour.
+
+    Raises:
+        InputError: a room cannot be reached or is too narrow to stand in.
+    """
+    height = _camera_height(rng, camera_height_m)
+    first = int(rng.integers(len(building.rooms))) if start is None else start
+    order = _visits(building, rng, first)
+    places = []
+    for room in dict.fromkeys(order):
+        count = int(rng.integers(per_room[0], per_room[1] + 1))
+        places += _waypoints(_Footing(building, room), rng, count)
+    positions = np.array(places)
+    beta = rng.uniform(-np.pi, np.pi, len(positions))
+    bob = 0.005 * rng.standard_normal(len(positions))
+    tilt = np.zeros((len(positions), 2))
+    return _walk(building, positions, bob, beta, tilt, height, positions)
+
+
+def locate(building: Building, position: FloatArray, heading: float) -> int:
+    """The room a camera's view is of.
+
+    Args:
+        building: where it is.
+        position: (2,) plan, metres.
+        heading: rad, from z towards x.
+
+    Returns:
+        Index of the room it stands in; in a doorway, of the room it looks into.
+
+    Raises:
+        InputError: it stands in no room and no passage.
+    """
+    point = shapely.Point(position)
+    for k, room in enumerate(building.rooms):
+        if shapely.Polygon(room.polygon).covers(point):
+            return k
+    for passage in building.passages:
+        if shapely.Polygon(passage.area).buffer(1e-9).covers(point):
+            ahead = passage.outward @ [np.sin(heading), np.cos(heading)] >= 0
+            return passage.rooms[int(ahead)]
+    raise InputError("camera", f"({position[0]:.3f}, {position[1]:.3f})", "a place inside a room")
+
+
+class _Footing:
+    """The floor of one room where one may walk, and the shortest ways over it."""
+
+    def __init__(self, building: Building, room: int) -> None:
+        self.outline = shapely.Polygon(building.rooms[room].polygon)
+        self.thresholds: dict[int, FloatArray] = {}
+        passages = [(k, building.passages[k]) for k, _ in building.neighbours(room)]
+        for clearance in _CLEARANCES_M:
+            floor = self.outline.buffer(-clearance, join_style="mitre")
+            ends = {k: _threshold(p, p.side(room), clearance + 1e-4) for k, p in passages}
+            if isinstance(floor, shapely.Polygon) and not floor.is_empty:
+                self.floor = floor.buffer(1e-6, join_style="mitre")
+                if all(self.floor.covers(shapely.Point(end)) for end in ends.values()):
+                    self.thresholds = ends
+                    break
+        else:
+            raise InputError(f"room {room}", "too narrow to walk in", "0.2 m and reachable doors")
+        ring = np.asarray(floor.exterior.coords)[:-1]
+        ring = ring if floor.exterior.is_ccw else ring[::-1]
+        before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+        self.bends = ring[before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0]
+
+    def way(self, start: FloatArray, end: FloatArray) -> list[FloatArray]:
+        """The shortest way from start to end over the walkable floor, without its start."""
+        nodes = np.vstack([start, end, self.bends])
+        distance = np.full(len(nodes), np.inf)
+        distance[0] = 0.0
+        before, todo = np.full(len(nodes), -1), set(range(len(nodes)))
+        while todo:
+            at = min(todo, key=lambda k: distance[k])
+            todo.remove(at)
+            if at == 1:
+                break
+            for k in todo:
+                length = float(np.hypot(*(nodes[k] - nodes[at])))
+                if distance[at] + length < distance[k] and self._free(nodes[at], nodes[k]):
+                    distance[k], before[k] = distance[at] + length, at
+        way, at = [], 1
+        while at > 0:
+            way.append(nodes[at])
+            at = int(before[at])
+        return way[::-1]
+
+    def _free(self, a: FloatArray, b: FloatArray) -> bool:
+        return bool(self.floor.covers(shapely.LineString([a, b])))
+
+
+def _threshold(passage: Passage, side: int, distance: float) -> FloatArray:
+    """The point `distance` before the middle of a passage, on one of its sides."""
+    inwards = passage.outward * (-1.0 if side == 0 else 1.0)
+    return np.asarray(passage.faces[side].mean(axis=0) + distance * inwards)
+
+
+def _visits(building: Building, rng: np.random.Generator, start: int) -> list[int]:
+    """Rooms in the order of a depth-first walk that ends in the last new room."""
+    order, seen, last_new = [start], {start}, 0
+
+    def visit(room: int) -> None:
+        nonlocal last_new
+        behind = [other for _, other in building.neighbours(room)]
+        for other in (behind[k] for k in rng.permutation(len(behind))):
+            if other in seen:
+                continue
+            seen.add(other)
+            order.append(other)
+            last_new = len(order)
+            visit(other)
+            order.append(room)
+
+    visit(start)
+    if len(seen) < len(building.rooms):
+        raise InputError(building.name, "rooms that cannot be reached", "a connected building")
+    return order[: max(last_new, 1)]
+
+
+def _route(
+    building: Building,
+    rng: np.random.Generator,
+    start: int,
+    step_m: float,
+    keyframes_per_room: int | None,
+) -> list[FloatArray]:
+    """Corners of the way through all rooms."""
+    footings = [_Footing(building, k) for k in range(len(building.rooms))]
+    order = _visits(building, rng, start)
+    least = step_m * (keyframes_per_room or 0)
+    route = [_waypoints(footings[start], rng, 1)[0]]
+    seen: set[int] = set()
+    for k, room in enumerate(order):
+        if room not in seen:
+            seen.add(room)
+            _tour(footings[room], rng, route, least)
+        if k + 1 < len(order):
+            _cross(building, footings, route, room, order[k + 1])
+    return route
+
+
+def _tour(
+    footing: _Footing, rng: np.random.Generator, route: list[FloatArray], least_m: float
+) -> None:
+    """Appends a round over the room's waypoints, repeated until it is long enough."""
+    walked = 0.0
+    while True:
+        count = int(np.clip(np.rint(footing.outline.area / 5.0), 2, 6))
+        todo = _waypoints(footing, rng, count)
+        while todo:
+            gaps = [float(np.hypot(*(place - route[-1]))) for place in todo]
+            way = footing.way(route[-1], todo.pop(int(np.argmin(gaps))))
+            walked += sum(float(np.hypot(*(b - a))) for a, b in pairwise([route[-1], *way]))
+            route += way
+        if walked >= least_m or walked < 0.1:
+            return
+
+
+def _cross(
+    building: Building, footings: list[_Footing], route: list[FloatArray], room: int, to: int
+) -> None:
+    """Appends the way from the route's end through the passage to a neighbouring room."""
+    index = next(k for k, behind in building.neighbours(room) if behind == to)
+    near, far = footings[room].thresholds[index], footings[to].thresholds[index]
+    route += [*footings[room].way(route[-1], near), far]
+
+
+def _waypoints(footing: _Footing, rng: np.random.Generator, count: int) -> list[FloatArray]:
+    """Places to go to, well away from the walls and from one another."""
+    for clearance in _WAYPOINT_CLEARANCES_M:
+        area = footing.outline.buffer(-clearance, join_style="mitre").intersection(footing.floor)
+        if not area.is_empty and area.area > 0:
+            break
+    low_x, low_z, high_x, high_z = area.bounds
+    drawn = rng.uniform([low_x, low_z], [high_x, high_z], (400, 2))
+    inside = drawn[shapely.contains_xy(area, drawn[:, 0], drawn[:, 1])][:60]
+    if len(inside) == 0:
+        inside = np.array([area.representative_point().coords[0]])
+    chosen = [inside[0]]
+    gap = np.hypot(*(inside - chosen[0]).T)
+    while len(chosen) < count and gap.max() > 0.3:
+        chosen.append(inside[int(np.argmax(gap))])
+        gap = np.minimum(gap, np.hypot(*(inside - chosen[-1]).T))
+    return chosen
+
+
+def _rounded(corners: FloatArray) -> FloatArray:
+    """The polyline with its corners cut by parabolas that begin at most `_TURN_M` before them."""
+    steps = np.hypot(*np.diff(corners, axis=0).T)
+    kept = corners[np.concatenate([[True], steps > 1e-6])]
+    if len(kept) < 3:
+        return np.asarray(kept)
+    steps = np.hypot(*np.diff(kept, axis=0).T)
+    t = np.linspace(0, 1, 16)[:, None]
+    pieces = [kept[:1]]
+    for k in range(1, len(kept) - 1):
+        reach = min(_TURN_M, steps[k - 1] / 2, steps[k] / 2)
+        a = kept[k] + (kept[k - 1] - kept[k]) * (reach / steps[k - 1])
+        b = kept[k] + (kept[k + 1] - kept[k]) * (reach / steps[k])
+        pieces.append((1 - t) ** 2 * a + 2 * t * (1 - t) * kept[k] + t**2 * b)
+    return np.vstack([*pieces, kept[-1:]])
+
+
+def _resampled(path: FloatArray, spacing: float) -> FloatArray:
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    at = np.linspace(0, arc[-1], max(int(arc[-1] / spacing), 1) + 1)
+    return np.stack([np.interp(at, arc, path[:, k]) for k in range(2)], axis=1)
+
+
+def _strides(rng: np.random.Generator, length: float, step_m: float) -> FloatArray:
+    """Ways along the path at which keyframes are taken, from 0."""
+    steps = step_m * rng.uniform(0.75, 1.25, int(length / (0.75 * step_m)) + 1)
+    at = np.concatenate([[0.0], np.cumsum(steps)])
+    return np.asarray(at[at <= length])
+
+
+def _headings(path: FloatArray) -> FloatArray:
+    """Unwrapped heading of the motion at each path point, smoothed along the way."""
+    if len(path) < 3:
+        return np.zeros(len(path))
+    moved = np.diff(path, axis=0)
+    raw = np.unwrap(np.arctan2(moved[:, 0], moved[:, 1]))
+    raw = np.append(raw, raw[-1])
+    return np.asarray(gaussian_filter1d(raw, _HEADING_SMOOTHING_M / _DENSE_M, mode="nearest"))
+
+
+def _smooth_noise(rng: np.random.Generator, count: int, smoothing: float) -> FloatArray:
+    """Gaussian noise of unit variance, correlated over about `smoothing` samples."""
+    margin = int(4 * smoothing) + 1
+    white = rng.standard_normal(count + 2 * margin)
+    gain = np.sqrt(2 * np.sqrt(np.pi) * smoothing)
+    return np.asarray(gaussian_filter1d(white, smoothing)[margin : margin + count] * gain)
+
+
+def _camera_height(rng: np.random.Generator, given: float | None) -> float:
+    drawn = float(rng.uniform(1.4, 1.7))
+    return drawn if given is None else given
+
+
+def _walk(
+    building: Building,
+    positions: FloatArray,
+    bob: FloatArray,
+    beta: FloatArray,
+    tilt: FloatArray,
+    height: float,
+    path: FloatArray,
+) -> Walk:
+    n = len(positions)
+    translations = np.stack([positions[:, 0], bob, positions[:, 1]], axis=1)
+    rotations = about_y(beta) @ _about_x(tilt[:, 0]) @ _about_z(tilt[:, 1])
+    labels = tuple(f"{k:04d}" for k in range(n))
+    rooms = [locate(building, p, float(b)) for p, b in zip(positions, beta, strict=True)]
+    return Walk(Trajectory(labels, rotations, translations), np.array(rooms), height, path)
+
+
+def about_y(angle: FloatArray) -> FloatArray:
+    """(N, 3, 3) rotations about the vertical by (N,) rad, turning z towards x."""
+    return _rotations(angle, 2, 0)
+
+
+def _about_x(angle: FloatArray) -> FloatArray:
+    return _rotations(angle, 1, 2)
+
+
+def _about_z(angle: FloatArray) -> FloatArray:
+    return _rotations(angle, 0, 1)
+
+
+def _rotations(angle: FloatArray, i: int, j: int) -> FloatArray:
+    """(N, 3, 3) rotations that turn axis i towards axis j."""
+    out = np.tile(np.eye(3), (len(angle), 1, 1))
+    out[:, i, i] = out[:, j, j] = np.cos(angle)
+    out[:, j, i], out[:, i, j] = np.sin(angle), -np.sin(angle)
+    return out
