@@ -493,7 +493,9 @@ class Config:
         _check(self, "")
 
 
-_PRESETS: dict[str, dict[str, Any]] = {"default": {}, "sound": {}}
+_CHANGES: dict[str, dict[str, Any]] = {"default": {}, "sound": {}}
+
+PRESETS = tuple(_CHANGES)
 
 
 def preset(name: str) -> Config:
@@ -502,9 +504,9 @@ def preset(name: str) -> Config:
     Raises:
         ConfigError: no such preset.
     """
-    if name not in _PRESETS:
-        raise ConfigError("preset", repr(name), " or ".join(sorted(_PRESETS)))
-    return override(Config(preset=name), _PRESETS[name])
+    if name not in _CHANGES:
+        raise ConfigError("preset", repr(name), " or ".join(sorted(_CHANGES)))
+    return override(Config(preset=name), _CHANGES[name])
 
 
 def override(config: Config, changes: Mapping[str, Any]) -> Config:

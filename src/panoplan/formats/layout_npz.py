@@ -57,5 +57,5 @@ def write_layout_npz(path: Path, layout: Layout) -> None:
         if (value := getattr(layout, name)) is not None
     }
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, **arrays)
+    np.savez_compressed(buffer, allow_pickle=False, **arrays)
     write_bytes(path, buffer.getvalue())

@@ -121,25 +121,25 @@ def _by_order(labels: Sequence[str], panoramas: Sequence[Panorama]) -> list[Pano
         return [None if n is None else known.get(n) for n in numbers]
     counted = all(n is not None for n in numbers)
     if counted and len(labels) == len(panoramas):
-        return sorted(panoramas, key=lambda p: _natural(p.id))
+        return [*sorted(panoramas, key=lambda p: _natural(p.id))]
     return [None] * len(labels)
 
 
 def _by_time(labels: Sequence[str], panoramas: Sequence[Panorama]) -> list[Panorama | None]:
     """By the nearest time stamp within half the median interval of the poses."""
-    none: list[Panorama | None] = [None] * len(labels)
+    found: list[Panorama | None] = [None] * len(labels)
     times, stamps = [_decimal(label) for label in labels], [_decimal(p.id) for p in panoramas]
     if len(labels) < 2 or None in times or None in stamps:
-        return none
+        return found
     at = np.array(times, dtype=float)
     have = np.array(stamps, dtype=float)
     reach = float(np.median(np.abs(np.diff(at)))) / 2
     for k, time in enumerate(at):
         nearest = int(np.argmin(np.abs(have - time)))
         if abs(have[nearest] - time) <= reach:
-            none[k] = panoramas[nearest]
-    taken = [p.id for p in none if p is not None]
-    return none if len(set(taken)) == len(taken) else [None] * len(labels)
+            found[k] = panoramas[nearest]
+    taken = [p.id for p in found if p is not None]
+    return found if len(set(taken)) == len(taken) else [None] * len(labels)
 
 
 def _whole(label: str) -> int | None:

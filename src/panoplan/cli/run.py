@@ -1,0 +1,58 @@
+"""panoplan run: poses and layouts become a floor plan."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from panoplan.cli import settings
+from panoplan.cli.progress import progress
+from panoplan.datasets.folder import open_folder
+from panoplan.errors import InputError
+from panoplan.formats.run_folder import RunFolder
+from panoplan.pipeline import RunOptions, run, summary
+
+EXIT_NO_ROOM = 3
+
+
+def add_parser(commands: Any) -> None:
+    """Adds the command."""
+    parser = commands.add_parser(
+        "run",
+        help="poses and layouts become a floor plan",
+        description="Turns a folder of camera poses and room layouts into a floor plan.",
+        epilog="example: panoplan run walk/ -o plan/ --camera-height 1.5",
+    )
+    parser.add_argument("input", type=Path, help="sequence folder")
+    parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
+    parser.add_argument("--trajectory", type=Path, help="TUM file instead of the folder's")
+    parser.add_argument("--layouts", type=Path, help="folder instead of the folder's")
+    parser.add_argument("--trajectory-unit", choices=["m", "unknown"], default="unknown")
+    parser.add_argument("--camera-height", type=_metres, metavar="M", help="metres above the floor")
+    parser.add_argument("--force", action="store_true", help="write into a folder of other files")
+    parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
+    settings.add_arguments(parser)
+    parser.set_defaults(act=act)
+
+
+def act(options: argparse.Namespace) -> int:
+    """Runs the command."""
+    config = settings.resolve(options)
+    if not options.input.is_dir():
+        raise InputError(options.input, "no folder", "a sequence folder")
+    scene = open_folder(options.input, trajectory=options.trajectory, layouts=options.layouts)
+    folder = RunFolder(options.output, force=options.force)
+    told = RunOptions(options.trajectory_unit, options.camera_height)
+    with progress("keyframes", quiet=options.quiet) as report:
+        plan = run(scene, config, told, folder, report)
+    if not options.quiet:
+        print(f"{scene.kind}: {scene.association}\n{summary(plan)}\n{folder.path / 'plan.json'}")
+    return 0 if any(room.polygon is not None for room in plan.rooms) else EXIT_NO_ROOM
+
+
+def _metres(text: str) -> float:
+    value = float(text)
+    if not 0.05 <= value <= 100:
+        raise argparse.ArgumentTypeError(f"found {text}; expected 0.05 to 100 metres")
+    return value

@@ -1,0 +1,133 @@
+"""The folder of a run: settings.toml, log.jsonl, plan.json, and the state of an unfinished one."""
+
+from __future__ import annotations
+
+import dataclasses
+import hashlib
+import json
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import tomli_w
+
+from panoplan import __version__
+from panoplan.config import Config, as_dict
+from panoplan.errors import InputError
+from panoplan.estimator.state import State, Walk
+from panoplan.formats.atomic import write_text
+from panoplan.formats.plan_json import write_plan
+from panoplan.formats.state import read_state, write_state
+from panoplan.types.events import Event
+from panoplan.types.keyframe import Keyframe
+from panoplan.types.plan import FloorPlan
+
+SETTINGS = "settings.toml"
+_STATE = ".unfinished.npz"
+_LOG = "log.jsonl"
+_SAVE_EVERY_S = 5.0
+
+
+def fingerprint(keyframes: Sequence[Keyframe], config: Config, walk: Walk) -> str:
+    """A hash of all that a plan depends on."""
+    digest = hashlib.sha256(f"{__version__} {config!r} {walk!r}".encode())
+    for keyframe in keyframes:
+        digest.update(repr((keyframe.id, keyframe.missing)).encode())
+        digest.update(keyframe.pose.rotation.tobytes() + keyframe.pose.translation.tobytes())
+        if keyframe.layout is not None:
+            for item in dataclasses.fields(keyframe.layout):
+                value = getattr(keyframe.layout, item.name)
+                digest.update(b"-" if value is None else value.tobytes())
+    return digest.hexdigest()
+
+
+class RunFolder:
+    """Writes what a run makes, and remembers how far it came.
+
+    Args:
+        path: made where it does not exist.
+        force: whether a folder that holds other things may be used.
+
+    Raises:
+        InputError: the path is a file, cannot be made, or holds other things.
+    """
+
+    def __init__(self, path: Path, *, force: bool = False) -> None:
+        self.path = path
+        try:
+            path.mkdir(parents=True, exist_ok=True)
+            names = {item.name for item in path.iterdir()}
+        except OSError as error:
+            raise InputError(path, f"{error.strerror or error}", "a folder to write to") from None
+        if names and not force and not names & {SETTINGS, _STATE}:
+            raise InputError(path, "a folder with other files", "an empty folder, or --force")
+        self._fingerprint = ""
+        self._saved_at = time.monotonic()
+
+    def begin(self, keyframes: Sequence[Keyframe], config: Config, walk: Walk) -> State | None:
+        """Writes the settings; gives the state of an unfinished run of the same input.
+
+        Args:
+            keyframes: of the whole walk.
+            config: settings.
+            walk: what is known of it.
+
+        Returns:
+            The state to go on from, or None.
+        """
+        self._fingerprint = fingerprint(keyframes, config, walk)
+        write_text(self.path / SETTINGS, tomli_w.dumps(as_dict(config)))
+        state = self._unfinished()
+        kept = self._lines_before(0 if state is None else state.seen)
+        write_text(self.path / _LOG, "".join(kept))
+        return state
+
+    def record(self, number: int, events: Sequence[Event]) -> None:
+        """Appends events of keyframe `number` to log.jsonl."""
+        with (self.path / _LOG).open("a", encoding="utf-8") as stream:
+            for event in events:
+                line = {"keyframe_number": number, "event": type(event).__name__, **_plain(event)}
+                stream.write(json.dumps(line, ensure_ascii=False) + "\n")
+
+    def save(self, state: State, *, now: bool = False) -> None:
+        """Saves the state every few seconds, or at once."""
+        if now or time.monotonic() - self._saved_at >= _SAVE_EVERY_S:
+            write_state(self.path / _STATE, state, self._fingerprint)
+            self._saved_at = time.monotonic()
+
+    def complete(self, plan: FloorPlan) -> None:
+        """Writes plan.json and drops the state of the unfinished run."""
+        write_plan(self.path / "plan.json", plan)
+        (self.path / _STATE).unlink(missing_ok=True)
+
+    def _unfinished(self) -> State | None:
+        path = self.path / _STATE
+        if not path.exists():
+            return None
+        try:
+            state, belongs_to = read_state(path)
+        except InputError:
+            # Of another version, or cut short with the machine: the walk begins anew.
+            return None
+        return state if belongs_to == self._fingerprint else None
+
+    def _lines_before(self, number: int) -> list[str]:
+        path = self.path / _LOG
+        if number == 0 or not path.exists():
+            return []
+        lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
+        return [
+            line
+            for line in lines
+            if line.endswith("\n") and json.loads(line)["keyframe_number"] < number
+        ]
+
+
+def _plain(value: Any) -> Any:
+    if dataclasses.is_dataclass(value):
+        return {f.name: _plain(getattr(value, f.name)) for f in dataclasses.fields(value)}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [_plain(item) for item in value] if isinstance(value, tuple) else value

@@ -1,0 +1,96 @@
+"""From a scene to a plan: wiring only."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Literal
+
+from panoplan.config import Config
+from panoplan.datasets.scene import Scene
+from panoplan.estimator.front import FloorPlanEstimator
+from panoplan.estimator.state import Walk
+from panoplan.exporters.pictures import write_plan_pictures
+from panoplan.formats.run_folder import RunFolder
+from panoplan.types.plan import FloorPlan
+
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True)
+class RunOptions:
+    """What a run is told beside its settings.
+
+    Attributes:
+        trajectory_unit: "m" where the trajectory is metric.
+        camera_height_m: overrides what the scene says.
+    """
+
+    trajectory_unit: Literal["unknown", "m"] = "unknown"
+    camera_height_m: float | None = None
+
+
+def run(
+    scene: Scene,
+    config: Config,
+    options: RunOptions,
+    folder: RunFolder,
+    progress: Progress,
+) -> FloorPlan:
+    """Estimates the plan of a scene and writes plan.json, plan.svg, plan.png and log.jsonl.
+
+    The walk goes on where an interrupted run with the same input and settings stopped.
+
+    Args:
+        scene: keyframes in the order of the walk.
+        config: settings.
+        options: what is known of the walk.
+        folder: where to; its log and its saved state are kept up to date.
+        progress: called with (keyframes done, keyframes in all).
+
+    Returns:
+        The plan.
+    """
+    height = options.camera_height_m or scene.camera_height_m
+    walk = Walk(options.trajectory_unit, height, len(scene.keyframes))
+    state = folder.begin(scene.keyframes, config, walk)
+    estimator = FloorPlanEstimator(config, walk, state=state)
+    try:
+        for number in range(estimator.state.seen, len(scene.keyframes)):
+            folder.record(number, estimator.update(scene.keyframes[number]))
+            folder.save(estimator.state)
+            progress(number + 1, len(scene.keyframes))
+    except KeyboardInterrupt:
+        folder.save(estimator.state, now=True)
+        raise
+    folder.record(len(scene.keyframes), estimator.finish())
+    plan = replace(estimator.plan(), level_rotation=scene.level_rotation)
+    write_plan_pictures(folder.path, plan)
+    folder.complete(plan)
+    return plan
+
+
+def summary(plan: FloorPlan) -> str:
+    """A few lines about a plan for the terminal."""
+    shaped = [room for room in plan.rooms if room.polygon is not None]
+    scale = plan.scale
+    lines = [f"{len(shaped)} rooms from {len(plan.trajectory)} keyframes, unit {plan.unit}"]
+    if scale.ch_per_su is None:
+        lines.append("scale unknown: lengths are camera heights, cameras are not placed")
+    else:
+        told = [f"scale {scale.ch_per_su:.6g} camera heights a trajectory unit ({scale.method})"]
+        if scale.at_edge:
+            told.append("at the edge of the searched range: do not trust it")
+        if not scale.converged:
+            told.append("it had not settled when the walk ended")
+        lines.append("; ".join(told))
+    for room in plan.rooms:
+        if room.polygon is None:
+            lines.append(f"{room.id}: no shape, {room.failure}")
+    left_out = [s for s in plan.skipped if s.what == "keyframe"]
+    reasons = sorted({s.reason for s in left_out})
+    lines += [
+        f"{sum(s.reason == reason for s in left_out)} keyframes left out: {reason}"
+        for reason in reasons
+    ]
+    return "\n".join(lines)
