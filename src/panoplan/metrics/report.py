@@ -1,0 +1,473 @@
+"""All figures of one plan against the truth, as a value, as plain data and as a table."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from panoplan.errors import InputError
+from panoplan.metrics import alignment, corners, rooms
+from panoplan.metrics.alignment import (
+    Alignment,
+    Freedom,
+    common_cameras,
+    fit,
+    metres_per_unit,
+    transformed,
+)
+from panoplan.metrics.corners import CornerDistances
+from panoplan.metrics.rooms import Match, Region, RoomScore, Score
+from panoplan.metrics.trajectory import TrajectoryError, trajectory_error
+from panoplan.types.arrays import BoolArray, FloatArray
+from panoplan.types.plan import FloorPlan, Room
+from panoplan.types.truth import GroundTruth, TrueRoom
+
+RECALL_CM = (10.0, 25.0)
+"""Distances at which corner recall and precision are told."""
+
+RoomsKind = Literal["rooms", "rooms_partial"]
+
+
+@dataclass(frozen=True)
+class RoomPair:
+    """A predicted room and the true one it is matched with at IoU 0.5 or more.
+
+    Attributes:
+        true: id of the true room.
+        predicted: id of the predicted room.
+        iou: of the two.
+        area_error_percent: (predicted - true) / true.
+        outline_cm: mean distance between the outlines, both ways averaged.
+    """
+
+    true: str
+    predicted: str
+    iou: float
+    area_error_percent: float
+    outline_cm: float
+
+
+@dataclass(frozen=True)
+class RoomFigures:
+    """How well rooms were found.
+
+    Attributes:
+        true: number of true rooms.
+        visited: number of true rooms a camera stands in, None where no camera is known.
+        predicted: predicted rooms that have a polygon.
+        without_polygon: predicted rooms that have none: they count as not predicted.
+        matching_none: predictions without a partner at the lowest threshold.
+        scores: recall and precision at IoU 0.3, 0.5, 0.7 over all true rooms.
+        scores_visited: the same over visited rooms; predictions of unvisited rooms left out.
+        pairs: rooms matched at 0.5.
+        mean_iou: over `pairs`.
+        floor_iou: of all rooms together.
+        area_error_median_percent: signed, over `pairs`.
+        area_error_mean_abs_percent: over `pairs`.
+        outline_cm: mean over `pairs` of the mean distance between outlines, both ways averaged.
+        outline_true_to_predicted_cm: the one way.
+        outline_predicted_to_true_cm: the other way.
+        overlap_m2: area claimed by more than one predicted room of a storey.
+    """
+
+    true: int
+    visited: int | None
+    predicted: int
+    without_polygon: int
+    matching_none: int
+    scores: tuple[RoomScore, ...]
+    scores_visited: tuple[RoomScore, ...] | None
+    pairs: tuple[RoomPair, ...]
+    mean_iou: float | None
+    floor_iou: float
+    area_error_median_percent: float | None
+    area_error_mean_abs_percent: float | None
+    outline_cm: float | None
+    outline_true_to_predicted_cm: float | None
+    outline_predicted_to_true_cm: float | None
+    overlap_m2: float
+
+
+@dataclass(frozen=True)
+class CornerFigures:
+    """How well corners were found.
+
+    Attributes:
+        metres_per_px: of the paper's grid.
+        paper: the paper's metric over all rooms.
+        paper_visited: the same over visited rooms, predictions of unvisited rooms left out.
+        released: the variant of the paper's released code, over all rooms.
+        released_visited: the same over visited rooms.
+        within: pairs of a distance in cm and the score of the best one-to-one matching within it.
+        true_to_predicted: distances of the true corners of matched rooms.
+        predicted_to_true: distances of the predicted corners of matched rooms.
+    """
+
+    metres_per_px: float
+    paper: Score
+    paper_visited: Score | None
+    released: Score
+    released_visited: Score | None
+    within: tuple[tuple[float, Score], ...]
+    true_to_predicted: CornerDistances
+    predicted_to_true: CornerDistances
+
+
+@dataclass(frozen=True, eq=False)
+class Report:
+    """All figures of one plan.
+
+    Attributes:
+        truth: which true rooms were compared with.
+        alignment: how the plan was brought onto them.
+        rooms: room figures.
+        corners: corner figures.
+        trajectory: camera positions after the alignment, None without common cameras.
+        scale_error_percent: estimated scale relative to the true one, less 1; None where it
+            cannot be known.
+    """
+
+    truth: RoomsKind
+    alignment: Alignment
+    rooms: RoomFigures
+    corners: CornerFigures
+    trajectory: TrajectoryError | None
+    scale_error_percent: float | None
+
+
+def evaluate(
+    plan: FloorPlan,
+    truth: GroundTruth,
+    *,
+    rooms: RoomsKind = "rooms",
+    visited: FloatArray | None = None,
+    align: Freedom = "scale",
+    true_ch_per_su: float | None = None,
+) -> Report:
+    """Compares a plan with the truth.
+
+    A plan without any room is a result: recall and precision are 0, and figures over matched
+    rooms are None.
+
+    Args:
+        plan: in metres or camera heights.
+        truth: what is true; cameras correspond by keyframe id.
+        rooms: complete true rooms, or those split at openings.
+        visited: (K, 2) true camera positions in metres that say which rooms were visited; None
+            for all of the true trajectory.
+        align: what may be fitted to bring the plan onto the truth; "scale" is the paper's
+            protocol.
+        true_ch_per_su: true scale of the trajectory, where known; else the error of the scale is
+            taken from a similarity of the camera positions.
+
+    Returns:
+        The report.
+
+    Raises:
+        InputError: the truth has no such rooms, or the alignment is not possible.
+
+    Source: Sec. V of the paper; what goes beyond it is told in each figure's own doc.
+    """
+    if rooms not in ("rooms", "rooms_partial"):
+        raise InputError("rooms", repr(rooms), "'rooms' or 'rooms_partial'")
+    true_rooms: tuple[TrueRoom, ...] = getattr(truth.plan, rooms)
+    if not true_rooms:
+        raise InputError(f"true {rooms}", "none", "at least one room")
+    found = alignment.align(plan, truth, align)
+    moved = transformed(plan, found.true_from_plan)
+    predicted = tuple(room for room in moved.rooms if room.polygon is not None)
+    compared = _Compared.of(true_rooms, predicted, _visiting(truth, visited))
+    ate = None
+    if truth.trajectory is not None:
+        ate = trajectory_error(*common_cameras(moved, truth.trajectory))
+    return Report(
+        truth=rooms,
+        alignment=found,
+        rooms=_room_figures(compared, len(plan.rooms) - len(predicted)),
+        corners=_corner_figures(compared, truth.plan.axis),
+        trajectory=ate,
+        scale_error_percent=scale_error_percent(plan, truth, true_ch_per_su),
+    )
+
+
+def scale_error_percent(
+    plan: FloorPlan, truth: GroundTruth, true_ch_per_su: float | None = None
+) -> float | None:
+    """Error of the estimated scale: estimated / true - 1, in percent.
+
+    Args:
+        plan: the plan.
+        truth: the truth.
+        true_ch_per_su: the true scale; if None, the metres a plan unit has by its own account are
+            compared with those that fit the true camera positions best.
+
+    Returns:
+        The error, or None where it cannot be known.
+    """
+    if true_ch_per_su is not None:
+        estimated = plan.scale.ch_per_su
+        return None if estimated is None else 100.0 * (estimated / true_ch_per_su - 1.0)
+    claimed = metres_per_unit(plan, truth.plan.camera_height_m)
+    if claimed is None or truth.trajectory is None:
+        return None
+    try:
+        fitted = fit(*common_cameras(plan, truth.trajectory), "similarity")
+    except InputError:
+        return None
+    return 100.0 * (claimed / fitted.scale - 1.0)
+
+
+def _visiting(truth: GroundTruth, visited: FloatArray | None) -> FloatArray | None:
+    if visited is not None or truth.trajectory is None:
+        return visited
+    return truth.trajectory.translations[:, [0, 2]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Compared:
+    """True and predicted rooms in one frame, in metres."""
+
+    true: tuple[TrueRoom, ...]
+    predicted: tuple[Room, ...]
+    true_regions: tuple[Region, ...]
+    predicted_regions: tuple[Region, ...]
+    overlap: FloatArray
+    visited: BoolArray | None
+    matches: tuple[Match, ...]
+
+    @staticmethod
+    def of(
+        true: tuple[TrueRoom, ...], predicted: tuple[Room, ...], cameras: FloatArray | None
+    ) -> _Compared:
+        true_regions = tuple(rooms.region(room.polygon, room.holes) for room in true)
+        predicted_regions = tuple(
+            rooms.region(room.polygon, room.holes) for room in predicted if room.polygon is not None
+        )
+        overlap = rooms.iou_matrix(true_regions, predicted_regions)
+        return _Compared(
+            true,
+            predicted,
+            true_regions,
+            predicted_regions,
+            overlap,
+            None if cameras is None else rooms.visited_rooms(true_regions, cameras),
+            rooms.matching(overlap, rooms.MATCH_IOU),
+        )
+
+
+def _room_figures(of: _Compared, without_polygon: int) -> RoomFigures:
+    scores = tuple(rooms.room_score(of.overlap, t) for t in rooms.THRESHOLDS)
+    visited_scores = None
+    if of.visited is not None:
+        visited_scores = tuple(
+            rooms.room_score(of.overlap, t, of.visited) for t in rooms.THRESHOLDS
+        )
+    area = 100.0 * rooms.area_errors(of.true_regions, of.predicted_regions, of.matches)
+    there, back = _outline_distances(of)
+    outline = (there + back) / 2
+    return RoomFigures(
+        true=len(of.true),
+        visited=None if of.visited is None else int(of.visited.sum()),
+        predicted=len(of.predicted),
+        without_polygon=without_polygon,
+        matching_none=len(of.predicted) - scores[0].hits,
+        scores=scores,
+        scores_visited=visited_scores,
+        pairs=tuple(
+            RoomPair(of.true[m.true].id, of.predicted[m.predicted].id, m.iou, float(a), float(d))
+            for m, a, d in zip(of.matches, area, outline, strict=True)
+        ),
+        mean_iou=_mean(np.array([match.iou for match in of.matches])),
+        floor_iou=rooms.floor_iou(of.true_regions, of.predicted_regions),
+        area_error_median_percent=float(np.median(area)) if len(area) else None,
+        area_error_mean_abs_percent=_mean(np.abs(area)),
+        outline_cm=_mean(outline),
+        outline_true_to_predicted_cm=_mean(there),
+        outline_predicted_to_true_cm=_mean(back),
+        overlap_m2=_overlap(of),
+    )
+
+
+def _outline_distances(of: _Compared) -> tuple[FloatArray, FloatArray]:
+    pairs = [(of.true_regions[m.true], of.predicted_regions[m.predicted]) for m in of.matches]
+    there = np.array([rooms.outline_distance(true, ours) for true, ours in pairs], dtype=float)
+    back = np.array([rooms.outline_distance(ours, true) for true, ours in pairs], dtype=float)
+    return 100.0 * there, 100.0 * back
+
+
+def _overlap(of: _Compared) -> float:
+    levels = sorted({room.level for room in of.predicted})
+    together = list(zip(of.predicted, of.predicted_regions, strict=True))
+    return sum(
+        rooms.overlap_area([area for room, area in together if room.level == level])
+        for level in levels
+    )
+
+
+def _corner_figures(of: _Compared, axis: FloatArray | None) -> CornerFigures:
+    true = [room.polygon for room in of.true]
+    predicted = [room.polygon for room in of.predicted if room.polygon is not None]
+    ours, theirs = corners.all_corners(true), corners.all_corners(predicted)
+    grid = corners.corner_grid(ours, axis)
+    there, back = corners.both_ways(true, predicted, of.matches)
+    paper_visited = released_visited = None
+    if of.visited is not None:
+        entered = _where(true, np.flatnonzero(of.visited))
+        left_out = rooms.of_unvisited(of.overlap, of.visited)
+        counted = _where(predicted, [k for k in range(len(predicted)) if k not in left_out])
+        paper_visited = corners.paper_score(entered, counted, grid)
+        released_visited = corners.released_score(entered, counted, grid)
+    return CornerFigures(
+        metres_per_px=grid.metres_per_px,
+        paper=corners.paper_score(ours, theirs, grid),
+        paper_visited=paper_visited,
+        released=corners.released_score(ours, theirs, grid),
+        released_visited=released_visited,
+        within=tuple((cm, corners.score_within(ours, theirs, cm / 100.0)) for cm in RECALL_CM),
+        true_to_predicted=there,
+        predicted_to_true=back,
+    )
+
+
+def _where(polygons: Sequence[FloatArray], chosen: Sequence[int] | Any) -> FloatArray:
+    return corners.all_corners([polygons[k] for k in chosen])
+
+
+def _mean(values: FloatArray) -> float | None:
+    return float(values.mean()) if len(values) else None
+
+
+def as_dict(report: Report) -> dict[str, Any]:
+    """The report as plain data for JSON: dicts, lists, numbers, strings and None."""
+    room, corner, moved = report.rooms, report.corners, report.alignment.true_from_plan
+    return {
+        "truth": report.truth,
+        "alignment": {
+            "freedom": report.alignment.freedom,
+            "metres_per_plan_unit": moved.scale,
+            "rotation_deg": float(np.rad2deg(moved.rotation_rad)),
+            "translation_m": [float(value) for value in moved.translation_m],
+            "cameras": report.alignment.cameras,
+            "residual_rmse_m": report.alignment.residual_rmse_m,
+        },
+        "rooms": {
+            **_plain(room),
+            "scores": [_score(score) for score in room.scores],
+            "scores_visited": (
+                None
+                if room.scores_visited is None
+                else [_score(score) for score in room.scores_visited]
+            ),
+            "pairs": [_plain(pair) for pair in room.pairs],
+        },
+        "corners": {
+            "metres_per_px": corner.metres_per_px,
+            "paper": _score(corner.paper),
+            "paper_visited": _score(corner.paper_visited),
+            "released": _score(corner.released),
+            "released_visited": _score(corner.released_visited),
+            "within": [{"cm": cm, **(_score(score) or {})} for cm, score in corner.within],
+            "true_to_predicted": _distances(corner.true_to_predicted),
+            "predicted_to_true": _distances(corner.predicted_to_true),
+        },
+        "trajectory": None if report.trajectory is None else _plain(report.trajectory),
+        "scale_error_percent": report.scale_error_percent,
+    }
+
+
+def _plain(value: object) -> dict[str, Any]:
+    return dict(vars(value))
+
+
+def _score(score: Score | None) -> dict[str, Any] | None:
+    if score is None:
+        return None
+    return {**_plain(score), "recall": score.recall, "precision": score.precision}
+
+
+def _distances(distances: CornerDistances) -> dict[str, Any]:
+    within = [{"cm": limit, "share": share} for limit, share in distances.within]
+    return {"count": distances.count, "median_cm": distances.median_cm, "within": within}
+
+
+def as_table(report: Report) -> str:
+    """The report as a text table, one figure a line, without a line break at its end."""
+    rows = [*_head_rows(report), *_score_rows(report), *_shape_rows(report)]
+    width = max(len(name) for name, _ in rows)
+    return "\n".join(f"{name:<{width}}  {value}" for name, value in rows)
+
+
+def _head_rows(report: Report) -> list[tuple[str, str]]:
+    room, moved = report.rooms, report.alignment.true_from_plan
+    visited = "" if room.visited is None else f" ({room.visited} visited)"
+    none = f", {room.without_polygon} without shape" if room.without_polygon else ""
+    turned = f", turned {np.rad2deg(moved.rotation_rad):+.2f}°"
+    shift = f", shifted {np.hypot(*moved.translation_m):.3f} m"
+    free = report.alignment.freedom
+    motion = turned + shift if free in ("rigid", "similarity") else ""
+    rows = [
+        ("true rooms", f"{room.true}{visited}, {report.truth}"),
+        ("predicted rooms", f"{room.predicted}{none}, {room.matching_none} matching none"),
+        ("alignment", f"{free}: {moved.scale:.4f} m a plan unit{motion}"),
+    ]
+    if report.trajectory is not None:
+        ate = report.trajectory
+        share = _number(ate.rmse_percent_of_length, ".2f", " % of the path")
+        found = f"RMSE {ate.rmse_cm:.1f} cm ({share}), median {ate.median_cm:.1f} cm"
+        rows.append(("camera positions", f"{found}, {ate.cameras} cameras"))
+    if report.scale_error_percent is not None:
+        rows.append(("scale error", f"{report.scale_error_percent:+.2f} %"))
+    return rows
+
+
+def _score_rows(report: Report) -> list[tuple[str, str]]:
+    room, corner = report.rooms, report.corners
+    rows = [(f"rooms, IoU {score.iou}", _recall_precision(score)) for score in room.scores]
+    for score in room.scores_visited or ():
+        rows.append((f"visited rooms, IoU {score.iou}", _recall_precision(score)))
+    rows.append(("corners, paper", _recall_precision(corner.paper)))
+    if corner.paper_visited is not None:
+        rows.append(("corners, paper, visited", _recall_precision(corner.paper_visited)))
+    rows.append(("corners, released", _recall_precision(corner.released)))
+    if corner.released_visited is not None:
+        rows.append(("corners, released, visited", _recall_precision(corner.released_visited)))
+    rows += [(f"corners within {cm:.0f} cm", _recall_precision(s)) for cm, s in corner.within]
+    return rows
+
+
+def _shape_rows(report: Report) -> list[tuple[str, str]]:
+    room, corner = report.rooms, report.corners
+    there, back = corner.true_to_predicted.median_cm, corner.predicted_to_true.median_cm
+    one, other = room.outline_true_to_predicted_cm, room.outline_predicted_to_true_cm
+    median, mean = room.area_error_median_percent, room.area_error_mean_abs_percent
+    outline = f"{_cm(room.outline_cm)} (from true {_cm(one)}, from predicted {_cm(other)})"
+    return [
+        ("floor IoU", f"{room.floor_iou:.3f}"),
+        ("mean IoU of matched rooms", _number(room.mean_iou, ".3f")),
+        ("corner distance, median", f"from true {_cm(there)}, from predicted {_cm(back)}"),
+        ("outline distance, mean", outline),
+        (
+            "area error",
+            f"median {_number(median, '+.1f', ' %')}, mean absolute {_number(mean, '.1f', ' %')}",
+        ),
+        ("overlap of predicted rooms", f"{room.overlap_m2:.2f} m²"),
+    ]
+
+
+def _recall_precision(score: Score) -> str:
+    recall = _number(score.recall, ".3f")
+    return (
+        f"recall {recall}  precision {score.precision:.3f}"
+        f"  ({score.hits} of {score.true} true, {score.predicted} predicted)"
+    )
+
+
+def _cm(value: float | None) -> str:
+    return _number(value, ".1f", " cm")
+
+
+def _number(value: float | None, form: str, unit: str = "") -> str:
+    return "–" if value is None else f"{value:{form}}{unit}"
