@@ -40,7 +40,7 @@ def open_folder(
             readable; several cameras all at one spot.
     """
     described = folder / "sequence.json"
-    sequence = read_sequence(described) if described.exists() else None
+    sequence = read_sequence(folder) if described.exists() else None
     trajectory = trajectory or folder / "trajectory.tum"
     layouts = layouts or folder / "layouts_pred"
     poses, turn = level(read_tum(trajectory))

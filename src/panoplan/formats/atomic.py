@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import stat
 import tempfile
 from pathlib import Path
 
@@ -46,6 +47,18 @@ def write_text(path: Path, text: str) -> None:
     write_bytes(path, text.encode("utf-8"))
 
 
+def make_folder(path: Path) -> None:
+    """Makes a folder and those above it, where they do not exist.
+
+    Raises:
+        InputError: it cannot be made, or a file stands in its place.
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise InputError(path, f"{error.strerror or error}", "a folder to write to") from None
+
+
 def read_bytes(path: Path, limit: int) -> bytes:
     """Reads a file of at most `limit` bytes.
 
@@ -53,12 +66,16 @@ def read_bytes(path: Path, limit: int) -> bytes:
         InputError: it is missing, no file, not readable, empty or larger.
     """
     try:
-        if path.is_dir():
-            raise InputError(path, "a folder", "a file")
-        size = path.stat().st_size
-        if size > limit:
-            raise InputError(path, f"{size} bytes", f"at most {limit}")
-        data = path.read_bytes()
+        status = path.stat()
+        if not stat.S_ISREG(status.st_mode):
+            found = "a folder" if stat.S_ISDIR(status.st_mode) else "a device or pipe"
+            raise InputError(path, found, "a file")
+        if status.st_size > limit:
+            raise InputError(path, f"{status.st_size} bytes", f"at most {limit}")
+        with path.open("rb") as stream:
+            data = stream.read(limit + 1)
+        if len(data) > limit:
+            raise InputError(path, f"more than {limit} bytes", f"at most {limit}")
     except FileNotFoundError:
         raise InputError(path, "nothing", "a file") from None
     except OSError as error:

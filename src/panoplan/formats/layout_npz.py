@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -11,36 +12,31 @@ from numpy.typing import NDArray
 
 from panoplan.errors import InputError
 from panoplan.formats.atomic import read_bytes, write_bytes
+from panoplan.formats.npy import parse_npy
 from panoplan.types.layout import Layout
 
 _FILE_LIMIT = 64 * 2**20
 _MEMBER_LIMIT = 16 * 2**20
 _FIELDS = ("floor_boundary", "ceiling_boundary", "corners", "floor_sigma")
+_BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, ValueError)
 
 
 def read_layout_npz(path: Path) -> Layout:
     """Reads a layout; members it does not know are not even unpacked.
 
+    Args:
+        path: `floor_boundary` (W,) elevation in rad, positive upwards, NaN where unknown, and
+            optionally the other arrays of `Layout` in its conventions; at most 64 MiB, a member
+            at most 16 MiB unpacked.
+
+    Returns:
+        The layout.
+
     Raises:
         InputError: missing, empty or truncated; a member pickled, oversized, or of wrong shape or
             type; no floor boundary.
     """
-    data = read_bytes(path, _FILE_LIMIT)
-    try:
-        with zipfile.ZipFile(io.BytesIO(data)) as archive:
-            sizes = {item.filename: item.file_size for item in archive.infolist()}
-        for name in _FIELDS:
-            if sizes.get(f"{name}.npy", 0) > _MEMBER_LIMIT:
-                found = f"{sizes[f'{name}.npy']} bytes of {name}"
-                raise InputError(path, found, f"at most {_MEMBER_LIMIT}")
-        with np.load(io.BytesIO(data), allow_pickle=False) as archive:
-            arrays: dict[str, NDArray[np.float64]] = {
-                name: archive[name] for name in _FIELDS if name in archive
-            }
-    except (zipfile.BadZipFile, EOFError, OSError, KeyError, ValueError) as error:
-        raise InputError(
-            path, f"no readable archive ({error})", "an .npz of plain arrays"
-        ) from None
+    arrays = _members(path)
     if "floor_boundary" not in arrays:
         raise InputError(path, "no floor_boundary", "floor_boundary (W,) in rad")
     try:
@@ -50,12 +46,41 @@ def read_layout_npz(path: Path) -> Layout:
 
 
 def write_layout_npz(path: Path, layout: Layout) -> None:
-    """Writes a layout as 32-bit floats."""
-    arrays = {
-        name: np.asarray(value, dtype=np.float32)
-        for name in _FIELDS
-        if (value := getattr(layout, name)) is not None
-    }
+    """Writes a layout as 32-bit floats.
+
+    Raises:
+        InputError: the place cannot be written.
+    """
     buffer = io.BytesIO()
-    np.savez_compressed(buffer, allow_pickle=False, **arrays)
+    with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name in _FIELDS:
+            value = getattr(layout, name)
+            if value is None:
+                continue
+            # A fixed date, so that the same layout gives the same bytes.
+            member = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
+            member.compress_type = zipfile.ZIP_DEFLATED
+            with archive.open(member, "w") as stream:
+                np.save(stream, np.asarray(value, dtype=np.float32), allow_pickle=False)
     write_bytes(path, buffer.getvalue())
+
+
+def _members(path: Path) -> dict[str, NDArray[np.float64]]:
+    data = read_bytes(path, _FILE_LIMIT)
+    arrays: dict[str, NDArray[np.float64]] = {}
+    try:
+        with zipfile.ZipFile(io.BytesIO(data)) as archive:
+            sizes = {item.filename: item.file_size for item in archive.infolist()}
+            for name in _FIELDS:
+                size = sizes.get(f"{name}.npy")
+                if size is None:
+                    continue
+                if size > _MEMBER_LIMIT:
+                    raise InputError(f"{path}, {name}", f"{size} bytes", f"at most {_MEMBER_LIMIT}")
+                with archive.open(f"{name}.npy") as stream:
+                    # The limit holds whatever size the archive declares.
+                    arrays[name] = parse_npy(stream.read(_MEMBER_LIMIT), f"{path}, {name}")
+    except _BROKEN as error:
+        found = f"no readable archive ({str(error)[:80]})"
+        raise InputError(path, found, "an .npz of plain arrays") from None
+    return arrays

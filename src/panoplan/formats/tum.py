@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 from panoplan.errors import InputError
 from panoplan.formats.atomic import read_text, write_text
@@ -68,11 +69,18 @@ def read_tum(path: Path) -> Trajectory:
 
 
 def write_tum(path: Path, trajectory: Trajectory) -> None:
-    """Writes a TUM trajectory."""
-    from scipy.spatial.transform import Rotation
+    """Writes a TUM trajectory; translations are read back to the bit, rotations to 1e-15.
 
+    Raises:
+        InputError: no pose, a label that would not be read back, or a place that cannot be written.
+    """
+    if not len(trajectory):
+        raise InputError(path, "no pose", "at least one")
+    for label in trajectory.labels:
+        if not re.fullmatch(r"[^\s,#]+", label):
+            raise InputError(path, f"the label {label!r}", "a word without space, comma or #")
     quaternions = Rotation.from_matrix(trajectory.rotations).as_quat()
     lines = ["# label tx ty tz qx qy qz qw (camera-to-world; x right, y down, z forward)"]
     for label, t, q in zip(trajectory.labels, trajectory.translations, quaternions, strict=True):
-        lines.append(" ".join([label, *(f"{value:.9f}" for value in (*t, *q))]))
+        lines.append(" ".join([label, *(repr(float(value)) for value in (*t, *q))]))
     write_text(path, "\n".join(lines) + "\n")
