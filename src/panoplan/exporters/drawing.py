@@ -1,125 +1,498 @@
-"""How a plan is drawn."""
+"""A plan drawn on matplotlib axes."""
 
 from __future__ import annotations
 
-import colorsys
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from textwrap import wrap
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import shapely
 
-from panoplan.geometry.polygons import signed_area
+from panoplan.exporters.labels import (
+    RoomLabel,
+    label_place,
+    printable,
+    room_label,
+    width_em,
+)
+from panoplan.metrics.rooms import region
 from panoplan.types.arrays import FloatArray
-from panoplan.types.plan import FloorPlan
+from panoplan.types.plan import FloorPlan, Room
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from matplotlib.text import Text
 
-WALL = "#22272e"
-PATH = "#64748b"
-CORNER = "#c026d3"
-_STEPS = (1.0, 2.0, 5.0)
+ROOM_COLOURS = (
+    "#A9D3E6", "#F7CBA4", "#C3E2B1", "#DCC6EC", "#FBE59B", "#F4B9B8",
+    "#B4E0D2", "#C1CBF2", "#E0D0BA", "#D6E79F", "#F3C9E2", "#BFD2DA",
+)  # fmt: skip
+WALL_COLOUR = "#2B3038"
+CORNER_COLOUR = "#D6336C"
+PATH_COLOUR = "#2563A8"
+WINDOW_COLOUR = "#4AA3DF"
+DOOR_COLOUR = "#9A6B3F"
+QUIET_COLOUR = "#5B636E"
+FONT = "DejaVu Sans"
+
+_MARGIN_PT = 22.0
+_NOTE_LINES = 6
 
 
-def room_colour(index: int) -> tuple[float, float, float]:
-    """A light colour; neighbouring indices lie far apart on the colour circle."""
-    return colorsys.hls_to_rgb((0.58 + index * 0.381966) % 1.0, 0.80, 0.55)
+@dataclass(frozen=True)
+class Shown:
+    """What is drawn of a plan.
+
+    Attributes:
+        corners: dots on the rooms' corners.
+        path: the cameras.
+        labels: names and areas.
+        footer: scale bar, totals and notes.
+    """
+
+    corners: bool = True
+    path: bool = True
+    labels: bool = True
+    footer: bool = True
 
 
-def plan_figure(plan: FloorPlan, *, long_side_inch: float = 11.0) -> Figure:
-    """A figure of the plan alone, as large as its extent asks for."""
+@dataclass(frozen=True, eq=False)
+class Sheet:
+    """How the plan lies on its axes.
+
+    Attributes:
+        low: (2,) least coordinates of what is drawn.
+        high: (2,) greatest coordinates of what is drawn.
+        points_per_unit: printer's points a plan unit.
+        weight: factor of line widths and font sizes, 1 on a page of 10 inches.
+    """
+
+    low: FloatArray
+    high: FloatArray
+    points_per_unit: float
+    weight: float
+
+    def units(self, points: float) -> float:
+        """Printer's points as a length in plan units."""
+        return points / self.points_per_unit
+
+
+def content_bounds(plan: FloorPlan) -> tuple[FloatArray, FloatArray]:
+    """Least and greatest coordinates of all that a plan holds, (0, 0) and (1, 1) if nothing."""
+    parts = [room.polygon for room in plan.rooms if room.polygon is not None]
+    parts += [camera.position[None] for camera in plan.trajectory]
+    parts += [*plan.doors, *plan.openings, *plan.windows]
+    if not parts:
+        return np.zeros(2), np.ones(2)
+    points = np.concatenate(parts)
+    low, high = points.min(axis=0), points.max(axis=0)
+    # A single camera has no extent of its own.
+    grow = max(0.0, 1.0 - float((high - low).max())) / 2
+    return low - grow, high + grow
+
+
+def room_colours(rooms: Sequence[Room]) -> dict[str, str]:
+    """A fill colour for each room with a polygon, different from those of its neighbours.
+
+    Returns:
+        Colours by room id.
+    """
+    shaped = [room for room in rooms if room.polygon is not None]
+    areas = [room_area(room) for room in shaped]
+    found: dict[str, str] = {}
+    for k, (room, area) in enumerate(zip(shaped, areas, strict=True)):
+        reach = 0.3 * float(np.sqrt(max(area.area, 0.0)))
+        near = {found[shaped[j].id] for j in range(k) if areas[j].distance(area) <= reach}
+        turns = [ROOM_COLOURS[(k + step) % len(ROOM_COLOURS)] for step in range(len(ROOM_COLOURS))]
+        found[room.id] = next((colour for colour in turns if colour not in near), turns[0])
+    return found
+
+
+def room_area(room: Room) -> Any:
+    """The shapely area of a room that has a polygon."""
+    return region(np.empty((0, 2)) if room.polygon is None else room.polygon, room.holes)
+
+
+def draw_plan(
+    axes: Axes,
+    plan: FloorPlan,
+    *,
+    shown: Shown | None = None,
+    colours: Mapping[str, str] | None = None,
+    bounds: tuple[FloatArray, FloatArray] | None = None,
+    title: str = "",
+) -> None:
+    """Draws a plan seen from above: first axis to the right, second up, both at one scale.
+
+    The limits of the axes are set so that all of it fits; their frame and ticks are hidden.
+    Rooms without a polygon are listed below; rooms too small for their name have a number.
+
+    Args:
+        axes: empty axes of a figure whose size is settled.
+        plan: the plan, with or without rooms.
+        shown: what is drawn; None for everything.
+        colours: fill by room id, instead of those of `room_colours`.
+        bounds: least and greatest coordinates to be shown, instead of the plan's own.
+        title: text above the plan.
+    """
+    shown = shown or Shown()
+    low, high = content_bounds(plan) if bounds is None else bounds
+    notes = _notes(plan) if shown.footer else []
+    sheet, lines = _laid_out(axes, low, high, notes, shown.footer, bool(title))
+    fills = room_colours(plan.rooms) if colours is None else colours
+    labels, small = _room_labels(plan, sheet) if shown.labels else ([], [])
+    if small and shown.footer:
+        sheet, lines = _laid_out(axes, low, high, [*small, *notes], True, bool(title))
+        labels, _ = _room_labels(plan, sheet)
+    from panoplan.exporters.layers import add_layer
+
+    layers: list[tuple[str, list[Artist]]] = [
+        ("rooms", _fills(plan, fills)),
+        ("walls", _outlines(plan, sheet)),
+        ("openings", _segments(plan, sheet)),
+    ]
+    if shown.path:
+        layers.append(("path", _path(plan, sheet)))
+    if shown.corners:
+        layers.append(("corners", _corners(plan, sheet)))
+    if shown.labels:
+        layers.append(("labels", [_label(label) for label in labels]))
+    if shown.footer:
+        layers.append(("scale", _footer(plan, sheet, lines)))
+    if title:
+        layers.append(("title", [_title(title, sheet)]))
+    for order, (name, marks) in enumerate(layers):
+        add_layer(axes, name, marks, order)
+
+
+def plan_figure(plan: FloorPlan, *, long_side_in: float = 10.0) -> Figure:
+    """A figure of a plan that is no larger than the plan needs.
+
+    Args:
+        plan: the plan.
+        long_side_in: its longer side in inches.
+    """
+    low, high = content_bounds(plan)
+    width, height = high - low
+    # Never so narrow that scale bar and notes have no room.
+    shape = np.array([max(width, 0.6 * height), max(height, 0.35 * width)]) + 0.08 * max(
+        width, height
+    )
+    return _figure(plan, *(long_side_in * shape / shape.max()))
+
+
+def scaled_figure(plan: FloorPlan, denominator: float) -> Figure:
+    """A figure of a metric plan in which a metre is 1 / `denominator` of a metre.
+
+    Args:
+        plan: in metres.
+        denominator: 100 for a scale of 1:100.
+    """
+    points_per_unit = 72.0 / 0.0254 / denominator
+    low, high = content_bounds(plan)
+    width, height = (high - low) * points_per_unit
+    page = np.array([max(width, 240.0) + 2 * _MARGIN_PT, height + 2 * _MARGIN_PT])
+    for _ in range(3):
+        weight = _weight(*page)
+        # As draw_plan lays it out: the footer's height depends on the notes, these on the size.
+        sheet = Sheet(low, high, points_per_unit, weight)
+        small = _room_labels(plan, sheet)[1]
+        lines = _wrapped([*small, *_notes(plan)], page[0] - 2 * _MARGIN_PT, weight)
+        page[1] = height + 2 * _MARGIN_PT + _footer_pt(lines, weight)
+    return _figure(plan, *(page / 72.0))
+
+
+def _figure(plan: FloorPlan, width_in: float, height_in: float) -> Figure:
     from matplotlib.figure import Figure
 
-    low, high = extent(plan)
-    width, height = np.maximum(high - low, 1e-6)
-    scale = long_side_inch / max(width, height)
-    figure = Figure(
-        figsize=(max(width * scale, 5.0), max(height * scale, 4.0) + 0.6), layout="constrained"
-    )
-    draw_plan(figure.add_subplot(), plan)
+    figure = Figure(figsize=(width_in, height_in), facecolor="white")
+    draw_plan(figure.add_axes((0.0, 0.0, 1.0, 1.0)), plan)
     return figure
 
 
-def extent(plan: FloorPlan) -> tuple[FloatArray, FloatArray]:
-    """Lowest and highest (x, y) of rooms and cameras, with a margin of 6 %."""
-    points = [room.polygon for room in plan.rooms if room.polygon is not None]
-    points += [pose.position[None] for pose in plan.trajectory]
-    everything = np.concatenate(points) if points else np.array([[0.0, 0.0], [1.0, 1.0]])
-    low, high = everything.min(axis=0), everything.max(axis=0)
-    margin = 0.06 * max(float((high - low).max()), 0.5)
-    return low - margin, high + margin
+def _weight(width_pt: float, height_pt: float) -> float:
+    return float(np.clip(max(width_pt, height_pt) / 720.0, 0.45, 1.3))
 
 
-def draw_plan(axes: Axes, plan: FloorPlan, *, labels: bool = True) -> None:
-    """Draws rooms, walls, corners, the camera's path, names, areas and a scale bar.
-
-    Args:
-        axes: where to; its limits and aspect are set.
-        plan: the plan; rooms without a polygon are named below.
-        labels: whether rooms are named.
-    """
-    for index, room in enumerate(plan.rooms):
-        if room.polygon is None:
-            continue
-        ring = np.vstack([room.polygon, room.polygon[:1]])
-        (area,) = axes.fill(*ring.T, color=room_colour(index), zorder=1, linewidth=0)
-        area.set_gid(f"room-{room.id}")
-        (outline,) = axes.plot(
-            *ring.T, color=WALL, linewidth=2.0, solid_joinstyle="miter", zorder=3
-        )
-        outline.set_gid(f"walls-{room.id}")
-        (dots,) = axes.plot(*room.polygon.T, "o", color=CORNER, markersize=3.5, zorder=4)
-        dots.set_gid(f"corners-{room.id}")
-    if plan.trajectory:
-        path = np.array([pose.position for pose in plan.trajectory])
-        (line,) = axes.plot(
-            *path.T, "-o", color=PATH, linewidth=0.7, markersize=2.0, alpha=0.8, zorder=2
-        )
-        line.set_gid("path")
-    if labels:
-        _label_rooms(axes, plan)
-    low, high = extent(plan)
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(low[1], high[1])
-    axes.set_aspect("equal")
+def _laid_out(
+    axes: Axes, low: FloatArray, high: FloatArray, notes: list[str], footer: bool, title: bool
+) -> tuple[Sheet, list[str]]:
+    """Sets the limits of the axes and says how the plan lies in them."""
+    figure = axes.get_figure(root=True)
+    assert figure is not None
+    box = axes.get_window_extent()
+    width, height = box.width * 72.0 / figure.dpi, box.height * 72.0 / figure.dpi
+    weight = _weight(width, height)
+    margin = min(_MARGIN_PT, 0.06 * min(width, height))
+    lines = _wrapped(notes, width - 2 * margin, weight) if footer else []
+    below = _footer_pt(lines, weight) if footer else 0.0
+    above = 18.0 * weight if title else 0.0
+    room = np.array([width - 2 * margin, max(height - 2 * margin - below - above, 1.0)])
+    scale = float((room / np.maximum(high - low, 1e-9)).min())
+    centre = (low + high) / 2
+    bottom = (high - low)[1] * scale
+    spare = (room[1] - bottom) / 2
+    first = low[1] - (margin + spare + below) / scale
     axes.set_axis_off()
-    _scale_bar(axes, plan, low, high)
-    shapeless = [f"{room.name}: {room.failure}" for room in plan.rooms if room.polygon is None]
-    if shapeless:
-        text = "without a shape: " + "; ".join(shapeless)
-        axes.text(
-            0.0, -0.01, text, transform=axes.transAxes, va="top", fontsize=7, parse_math=False,
-            wrap=True,
-        )  # fmt: skip
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_xlim(centre[0] - width / scale / 2, centre[0] + width / scale / 2)
+    axes.set_ylim(first, first + height / scale)
+    return Sheet(low, high, scale, weight), lines
 
 
-def _label_rooms(axes: Axes, plan: FloorPlan) -> None:
-    from shapely import Polygon, maximum_inscribed_circle
+def _footer_pt(lines: Sequence[str], weight: float) -> float:
+    return (34.0 + 10.5 * len(lines)) * weight
 
-    low, high = extent(plan)
-    span = float(max(high - low))
-    unit = "m²" if plan.unit == "m" else "ch²"
+
+def _wrapped(notes: Sequence[str], width_pt: float, weight: float) -> list[str]:
+    """Notes broken into lines of the page, the last saying if there are more than fit."""
+    characters = max(20, int(width_pt / (6.5 * weight * 0.56)))
+    lines = [line for note in notes for line in wrap(note, characters)]
+    if len(lines) > _NOTE_LINES:
+        lines = [*lines[: _NOTE_LINES - 1], f"… and {len(lines) - _NOTE_LINES + 1} more lines"]
+    return lines
+
+
+def _notes(plan: FloorPlan) -> list[str]:
+    missing = [room for room in plan.rooms if room.polygon is None]
+    if not missing:
+        return []
+    told = (
+        f"{printable(room.name)} ({printable(room.failure or 'no shape found')})"
+        for room in missing
+    )
+    return ["Without a shape: " + "; ".join(told) + "."]
+
+
+def _area_text(area: float, plan: FloorPlan) -> str:
+    return f"{area:.1f} m²" if plan.unit == "m" else f"{area:.2f} ch²"
+
+
+def _room_labels(plan: FloorPlan, sheet: Sheet) -> tuple[list[RoomLabel], list[str]]:
+    """Labels of the rooms, and the line that tells what the numbers in small rooms mean."""
+    labels: list[RoomLabel] = []
+    small: list[str] = []
     for room in plan.rooms:
-        if room.polygon is None:
+        area = room_area(room)
+        if area.is_empty or area.area <= 0:
             continue
-        circle = maximum_inscribed_circle(Polygon(room.polygon), tolerance=0.02 * span)
-        (x, y), radius = circle.coords[0], circle.length
-        text = f"{room.name}\n{signed_area(room.polygon):.1f} {unit}"
-        axes.text(
-            x, y, text, ha="center", va="center", zorder=5, color=WALL, parse_math=False,
-            fontsize=float(np.clip(330 * radius / span, 4.5, 10.0)),
-        ).set_gid(f"label-{room.id}")  # fmt: skip
+        name, figure = printable(room.name), _area_text(area.area, plan)
+        label = room_label(
+            area, name, figure, sheet.points_per_unit, 9.0 * sheet.weight, 4.6 * sheet.weight
+        )
+        if label is None:
+            small.append(f"{len(small) + 1} {name}, {figure}")
+            label = RoomLabel(label_place(area), (str(len(small)),), 6.0 * sheet.weight)
+        labels.append(label)
+    return labels, ["  ·  ".join(small)] if small else []
 
 
-def _scale_bar(axes: Axes, plan: FloorPlan, low: FloatArray, high: FloatArray) -> None:
-    wanted = float(high[0] - low[0]) / 6
-    power = 10.0 ** np.floor(np.log10(wanted))
-    length = power * max(step for step in _STEPS if step * power <= wanted)
-    x, y = low[0] + 0.01 * (high[0] - low[0]), low[1] + 0.012 * (high[1] - low[1])
-    (bar,) = axes.plot([x, x + length], [y, y], color="black", linewidth=3, solid_capstyle="butt")
-    bar.set_gid("scale-bar")
-    unit = "m" if plan.unit == "m" else "camera heights"
-    axes.text(
-        x + length / 2, y, f"{length:g} {unit}\n", ha="center", va="center", fontsize=8,
-        parse_math=False, linespacing=1.6,
-    )  # fmt: skip
+def _ring_path(area: Any) -> Any:
+    """A matplotlib path of an area with its holes."""
+    from matplotlib.path import Path
+
+    rings = [ring for part in shapely.get_parts(area) for ring in (part.exterior, *part.interiors)]
+    return Path.make_compound_path(
+        *(Path(shapely.get_coordinates(ring), closed=True) for ring in rings)
+    )
+
+
+def _shaped(plan: FloorPlan) -> list[tuple[Room, Any]]:
+    areas = [(room, room_area(room)) for room in plan.rooms if room.polygon is not None]
+    return [(room, area) for room, area in areas if not area.is_empty]
+
+
+def _fills(plan: FloorPlan, colours: Mapping[str, str]) -> list[Artist]:
+    from matplotlib.patches import PathPatch
+
+    return [
+        PathPatch(
+            _ring_path(area),
+            facecolor=colours.get(room.id, "#E6E8EB"),
+            edgecolor="none",
+            gid=f"fill_{room.id}",
+        )
+        for room, area in _shaped(plan)
+    ]
+
+
+def _outlines(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
+    from matplotlib.patches import PathPatch
+
+    return [
+        PathPatch(
+            _ring_path(area),
+            facecolor="none",
+            edgecolor=WALL_COLOUR,
+            linewidth=1.9 * sheet.weight,
+            joinstyle="miter",
+            gid=f"outline_{room.id}",
+        )
+        for room, area in _shaped(plan)
+    ]
+
+
+def _segments(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
+    from matplotlib.collections import LineCollection
+
+    found: list[Artist] = []
+    kinds = (
+        ("doors", plan.doors, DOOR_COLOUR, "solid"),
+        ("passages", plan.openings, QUIET_COLOUR, (0, (2.0, 1.5))),
+        ("windows", plan.windows, WINDOW_COLOUR, "solid"),
+    )
+    for name, segments, colour, style in kinds:
+        if not segments:
+            continue
+        for width, ink, dash in ((3.4, "white", "solid"), (1.3, colour, style)):
+            lines = LineCollection(
+                [np.asarray(s) for s in segments],
+                colors=ink,
+                linewidths=width * sheet.weight,
+                linestyles=[dash],
+                capstyle="butt",
+            )
+            lines.set_gid(name if ink != "white" else f"{name}_gap")
+            found.append(lines)
+    return found
+
+
+def _path(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
+    from matplotlib.lines import Line2D
+
+    if not plan.trajectory:
+        return []
+    x, y = np.array([camera.position for camera in plan.trajectory]).T
+    line = Line2D(x, y, color=PATH_COLOUR, linewidth=0.7 * sheet.weight, alpha=0.55)
+    size = float(np.clip(3.4 - 0.004 * len(x), 1.6, 3.4)) * sheet.weight
+    dots = Line2D(
+        x,
+        y,
+        color=PATH_COLOUR,
+        linestyle="none",
+        marker="o",
+        markersize=size,
+        markeredgecolor="white",
+        markeredgewidth=0.3 * sheet.weight,
+    )
+    line.set_gid("path_line")
+    dots.set_gid("path_cameras")
+    return [line, dots]
+
+
+def _corners(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
+    from matplotlib.lines import Line2D
+
+    rings = [
+        ring
+        for room in plan.rooms
+        if room.polygon is not None
+        for ring in (room.polygon, *room.holes)
+    ]
+    if not rings:
+        return []
+    x, y = np.concatenate(rings).T
+    return [
+        Line2D(
+            x,
+            y,
+            linestyle="none",
+            marker="o",
+            markersize=3.8 * sheet.weight,
+            markerfacecolor=CORNER_COLOUR,
+            markeredgecolor="white",
+            markeredgewidth=0.45 * sheet.weight,
+        )
+    ]
+
+
+def _text(x: float, y: float, text: str, size: float, colour: str, **place: Any) -> Text:
+    from matplotlib.text import Text
+
+    return Text(x, y, text, fontsize=size, color=colour, fontfamily=FONT, parse_math=False, **place)
+
+
+def _label(label: RoomLabel) -> Text:
+    x, y = label.position
+    text = _text(
+        x,
+        y,
+        "\n".join(label.lines),
+        label.size_pt,
+        WALL_COLOUR,
+        ha="center",
+        va="center",
+        multialignment="center",
+        linespacing=1.15,
+    )
+    text.set_bbox(
+        {"boxstyle": "round,pad=0.2", "facecolor": "white", "edgecolor": "none", "alpha": 0.72}
+    )
+    return text
+
+
+def _title(title: str, sheet: Sheet) -> Text:
+    x = (sheet.low[0] + sheet.high[0]) / 2
+    y = sheet.high[1] + sheet.units(9.0 * sheet.weight)
+    return _text(x, y, printable(title), 11.0 * sheet.weight, WALL_COLOUR, ha="center", va="bottom")
+
+
+def bar_length(extent: float) -> float:
+    """A round length (1, 2 or 5 times a power of ten) of a tenth to a quarter of an extent."""
+    goal = extent / 4
+    power = 10.0 ** np.floor(np.log10(goal))
+    return float(max(step * power for step in (1, 2, 5) if step * power <= goal))
+
+
+def _footer(plan: FloorPlan, sheet: Sheet, lines: Sequence[str]) -> list[Artist]:
+    size = 7.5 * sheet.weight
+    left = float(sheet.low[0])
+    centre = (sheet.low[0] + sheet.high[0]) / 2
+    least = sheet.units(220.0 * sheet.weight)
+    if sheet.high[0] - sheet.low[0] < least:
+        left = float(centre - least / 2)
+    bar = float(sheet.low[1]) - sheet.units(20.0 * sheet.weight)
+    marks = _scale_bar(plan, sheet, left, bar, size)
+    for k, line in enumerate(lines):
+        y = bar - sheet.units((14.0 + 10.5 * k) * sheet.weight)
+        marks.append(_text(left, y, line, 6.5 * sheet.weight, QUIET_COLOUR, ha="left", va="top"))
+    return marks
+
+
+def _scale_bar(plan: FloorPlan, sheet: Sheet, left: float, y: float, size: float) -> list[Artist]:
+    """A bar of two fields, its length beside it, and the totals."""
+    from matplotlib.patches import Rectangle
+
+    length = bar_length(float((sheet.high - sheet.low).max()))
+    height = sheet.units(4.0 * sheet.weight)
+    marks: list[Artist] = [
+        Rectangle(
+            (left + k * length / 2, y),
+            length / 2,
+            height,
+            facecolor=colour,
+            edgecolor=WALL_COLOUR,
+            linewidth=0.7 * sheet.weight,
+        )
+        for k, colour in enumerate((WALL_COLOUR, "white"))
+    ]
+    unit = "m" if plan.unit == "m" else "camera height" if length == 1 else "camera heights"
+    told = f"{length:g} {unit}"
+    start = left + length + sheet.units(6.0 * sheet.weight)
+    middle = y + height / 2
+    marks.append(_text(start, middle, told, size, WALL_COLOUR, ha="left", va="center"))
+    end = start + sheet.units(size * (width_em(told) + 2.0))
+    marks.append(_text(end, middle, _totals(plan), size, QUIET_COLOUR, ha="left", va="center"))
+    return marks
+
+
+def _totals(plan: FloorPlan) -> str:
+    areas = [float(area.area) for _, area in _shaped(plan)]
+    if not areas:
+        return "no room found" if plan.trajectory else "nothing found"
+    rooms = "1 room" if len(areas) == 1 else f"{len(areas)} rooms"
+    return f"{rooms}, {_area_text(sum(areas), plan)}"

@@ -149,7 +149,8 @@ def room_score(
         counted = np.ones(overlap.shape[1], dtype=np.bool_)
         counted[list(of_unvisited(overlap, visited))] = False
         overlap = overlap[np.ix_(visited, counted)]
-    return RoomScore(len(matching(overlap, threshold)), *overlap.shape, threshold)
+    true, predicted = overlap.shape
+    return RoomScore(len(matching(overlap, threshold)), true, predicted, threshold)
 
 
 def of_unvisited(overlap: FloatArray, visited: BoolArray) -> tuple[int, ...]:
