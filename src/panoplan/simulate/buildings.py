@@ -20,6 +20,7 @@ PassageKind = Literal["door", "opening"]
 Seed = int | np.random.SeedSequence | np.random.Generator
 
 _JAMB_MARGIN_M = 0.1
+_SIZES_TRIED, _DRAWS_A_SIZE = 40, 30
 
 
 @dataclass(frozen=True, eq=False)
@@ -301,7 +302,7 @@ def make_flat(
         The flat, turned by a random angle, its centre within 3 m of the origin.
 
     Raises:
-        InputError: `rooms` or `area_m2` out of range.
+        InputError: `rooms` or `area_m2` out of range, or so many do not fit into so little.
     """
     if rooms is not None and not 5 <= rooms <= 9:
         raise InputError("rooms", str(rooms), "5-9")
@@ -309,8 +310,9 @@ def make_flat(
         raise InputError("area_m2", str(area_m2), "55-220")
     rng = np.random.default_rng(seed)
     skew = bool(rng.random() < 1 / 3) if skewed is None else skewed
-    while True:
-        count, area = _size(rng, rooms, area_m2)
+    for attempt in range(_SIZES_TRIED * _DRAWS_A_SIZE):
+        if attempt % _DRAWS_A_SIZE == 0:
+            count, area = _size(rng, rooms, area_m2)
         planned = _flat_rooms(rng, count, area, skew)
         if planned is None:
             continue
@@ -327,6 +329,7 @@ def make_flat(
             continue
         centre = np.mean([r.polygon.mean(axis=0) for r in flat.rooms], axis=0)
         return flat.moved(0.0, -centre).moved(rng.uniform(-np.pi, np.pi), rng.uniform(-2, 2, 2))
+    raise InputError("rooms, area_m2", f"{rooms}, {area_m2}", "rooms that fit into the area")
 
 
 def make_corridor_building(n_rooms: int, seed: int, *, opening_share: float = 0.0) -> Building:
@@ -378,11 +381,11 @@ def _row(rng: np.random.Generator, count: int, face: float, *, upwards: bool) ->
 
 
 def _size(rng: np.random.Generator, rooms: int | None, area_m2: float | None) -> tuple[int, float]:
-    """Number of rooms and inner area of the footprint, at 9-24 m² a room."""
+    """Number of rooms and inner area of the footprint, at 8-30 m² a room."""
     while True:
-        count = rooms or int(np.clip(np.rint(rng.normal(7, 1.4)), 5, 9))
-        area = area_m2 or float(rng.normal(112, 48))
-        if (58 <= area <= 220 and 8 <= area / count <= 26) or (rooms and area_m2):
+        count = rooms or int(np.clip(np.rint(rng.normal(7, 1.6)), 5, 9))
+        area = area_m2 or float(rng.normal(97, 66))
+        if (56 <= area <= 220 and 8 <= area / count <= 30) or (rooms and area_m2):
             return count, area
 
 

@@ -21,10 +21,8 @@ GROSS_M = 0.3
 GROSS_SHARE = 0.15
 
 _REFERENCE_WIDTH = 1024
-_STEEPEST_RAD, _SHALLOWEST_RAD = np.deg2rad(-86.0), np.deg2rad(-1.5)
-_LEAST_CORE = 0.3
+_STEEPEST_RAD, _SHALLOWEST_RAD = np.deg2rad(-89.99), np.deg2rad(-1.5)
 _CEILING_CORRELATION = 0.6
-_MEDIAN_Z = 0.6744897501960817
 _PERCENTILE_90_Z = 1.2815515655446004
 
 
@@ -35,14 +33,14 @@ class DistanceBin:
     Attributes:
         from_m: the bin's lower end; it reaches to that of the next.
         bias_deg: median error of the elevation, predicted less true.
-        sigma_deg: MAD-sigma of the elevation's error, all causes together.
-        tail: h ≥ 0 of Tukey's g-and-h family, by which the errors' tails are heavier than a
-            Gaussian's: error = sigma·z·exp(h·z²/2).
+        core_deg: c of the columns' own error c·z·exp(h·z²/2), z standard Gaussian.
+        tail: h ≥ 0 of the same (Tukey's h distribution): how much heavier than a Gaussian's
+            the tails are.
     """
 
     from_m: float
     bias_deg: float
-    sigma_deg: float
+    core_deg: float
     tail: float
 
 
@@ -83,24 +81,36 @@ class Measured:
 
 MEASURED = Measured()
 
-_TAILS = (1.19, 0.81, 0.63, 0.61, 0.33, 0.75)
-_BEYOND_6_M = 1.25
-_BEYOND_6_M_TAIL = 0.5
+_BEYOND_6_M_SIGMA = 1.25
+_BEYOND_6_M_GROSS = 0.25
+"""Assumed: angular error relative to that at 4-6 m, and gross share."""
+
+TARGET_SIGMA_DEG = (*MEASURED.sigma_deg, MEASURED.sigma_deg[-1] * _BEYOND_6_M_SIGMA)
+TARGET_GROSS_SHARE = (*MEASURED.gross_share, _BEYOND_6_M_GROSS)
+"""What the errors of a panorama together come to in each bin, the last from 6 m on."""
+
+# A common factor on a panorama's ranges errs the elevation by sin φ cos φ a unit, the more the
+# nearer φ is to 45°. The cores are what is then missing to the target MAD-sigma, at a camera
+# height of 1.54 m and distances spread evenly over each bin (0.4-1 m, 6-9 m at the ends). Hard's
+# tails make up the target gross shares; the 90th percentiles of the range error follow of
+# themselves. At 1.5-2 m hard's scale error alone has the target sigma: its core is kept at
+# 0.05°, which leaves the total 7 % above.
+_MILD_CORES_DEG = (0.835, 0.526, 0.224, 0.437, 0.626, 0.786, 1.013)
+_HARD_CORES_DEG = (0.445, 0.273, 0.050, 0.170, 0.446, 0.472, 0.760)
+_HARD_TAILS = (1.55, 0.86, 1.52, 1.24, 0.54, 1.35, 0.93)
 
 
-def _bins(*, biased: bool, heavy: bool) -> tuple[DistanceBin, ...]:
-    last = MEASURED.sigma_deg[-1] * _BEYOND_6_M
-    columns = zip(
-        (*MEASURED.from_m, 6.0),
-        (*MEASURED.bias_deg, MEASURED.bias_deg[-1]),
-        (*MEASURED.sigma_deg, last),
-        (*_TAILS, _BEYOND_6_M_TAIL),
-        strict=True,
-    )
+def _mild_bins() -> tuple[DistanceBin, ...]:
+    lows = (*MEASURED.from_m, 6.0)
     return tuple(
-        DistanceBin(low, bias if biased else 0.0, sigma, tail if heavy else 0.0)
-        for low, bias, sigma, tail in columns
+        DistanceBin(low, 0.0, core, 0.0) for low, core in zip(lows, _MILD_CORES_DEG, strict=True)
     )
+
+
+def _hard_bins() -> tuple[DistanceBin, ...]:
+    lows, biases = (*MEASURED.from_m, 6.0), (*MEASURED.bias_deg, MEASURED.bias_deg[-1])
+    columns = zip(lows, biases, _HARD_CORES_DEG, _HARD_TAILS, strict=True)
+    return tuple(DistanceBin(*column) for column in columns)
 
 
 @dataclass(frozen=True)
@@ -113,7 +123,8 @@ class NoiseModel:
         scale_std: standard deviation of a panorama's common factor on its ranges.
         scale_outlier_share: share of panoramas whose factor is drawn from a wider Gaussian, so
             that it has heavy tails at the same standard deviation.
-        scale_core_std: standard deviation of the factor in the other panoramas.
+        scale_core_std: standard deviation of the factor in the other panoramas; of no effect
+            where there are no outliers.
         gross_share: share of columns, in contiguous stretches, that are made grossly wrong on
             top of the bins' tails.
         gross_columns: mean length of a stretch, columns of 1024.
@@ -159,9 +170,8 @@ def _corner_spread() -> tuple[tuple[int, float], ...]:
 EXACT = NoiseModel("exact")
 MILD = NoiseModel(
     "mild",
-    bins=_bins(biased=False, heavy=False),
+    bins=_mild_bins(),
     scale_std=0.015,
-    scale_core_std=0.015,
     gross_share=0.02,
     corner_recall=MEASURED.corner_recall[-1][1],
     corner_precision=MEASURED.corner_precision[-1][1],
@@ -171,10 +181,10 @@ MILD = NoiseModel(
 )
 HARD = NoiseModel(
     "hard",
-    bins=_bins(biased=True, heavy=True),
+    bins=_hard_bins(),
     scale_std=MEASURED.scale_std,
-    scale_outlier_share=0.18,
-    scale_core_std=0.0133,
+    scale_outlier_share=0.15,
+    scale_core_std=0.0129,
     height_jitter=0.03,
     occluder_share=0.3,
     door_leak=0.08,
@@ -214,12 +224,12 @@ def draw_leaks(
 
 def scale_factor(model: NoiseModel, rng: np.random.Generator) -> float:
     """A panorama's common factor on its ranges, around 1."""
-    outlier, z = rng.random() < model.scale_outlier_share, float(rng.standard_normal())
-    if not outlier:
-        return float(np.exp(model.scale_core_std * z))
-    share = model.scale_outlier_share
-    wide = (model.scale_std**2 - (1 - share) * model.scale_core_std**2) / share
-    return float(np.exp(np.sqrt(wide) * z))
+    share, core = model.scale_outlier_share, model.scale_core_std
+    outlier, z = rng.random() < share, float(rng.standard_normal())
+    if share == 0:
+        return float(np.exp(model.scale_std * z))
+    wide = np.sqrt((model.scale_std**2 - (1 - share) * core**2) / share)
+    return float(np.exp((wide if outlier else core) * z))
 
 
 def noisy_layout(view: View, model: NoiseModel, rng: np.random.Generator) -> Layout:
@@ -234,8 +244,6 @@ def noisy_layout(view: View, model: NoiseModel, rng: np.random.Generator) -> Lay
         Floor and ceiling boundary and corners with the errors of the model. The ceiling's
         errors are not measured: they are the floor's core, partly independent.
     """
-    if not model.bins:
-        return view.layout
     width = len(view.range_m)
     ranges, corners = view.range_m, view.corners
     if rng.random() < model.occluder_share:
@@ -243,8 +251,7 @@ def noisy_layout(view: View, model: NoiseModel, rng: np.random.Generator) -> Lay
         corners = np.append(corners, edges)
     factor = scale_factor(model, rng) * (1 + model.height_jitter * rng.standard_normal())
     field = column_field(width, rng)
-    elevation = -np.arctan2(view.camera_height_m, ranges)
-    bias, core, tail = _errors_at(model, view.range_m, elevation)
+    bias, core, tail = _errors_at(model, view.range_m)
     error = bias + core * field * np.exp(tail * field**2 / 2)
     elevation = -np.arctan2(view.camera_height_m, ranges * factor) + error
     elevation = np.clip(elevation, _STEEPEST_RAD, _SHALLOWEST_RAD)
@@ -270,9 +277,9 @@ def column_field(width: int, rng: np.random.Generator) -> FloatArray:
 
 
 def correlation(lag: FloatArray) -> FloatArray:
-    """Correlation of the column noise at lags in columns of 1024: fitted to the measured one."""
-    near, far = 45.0, 110.0
-    return np.asarray(0.008 * (lag == 0) + 0.492 * np.exp(-lag / near) + 0.5 * np.exp(-lag / far))
+    """Correlation of the column noise at lags in columns of 1024, fitted to the measured one."""
+    near, far, share = 44.0, 400.0, 0.683
+    return np.asarray(share * np.exp(-lag / near) + (1 - share) * np.exp(-lag / far))
 
 
 @lru_cache(maxsize=8)
@@ -283,22 +290,15 @@ def _amplitudes(width: int) -> FloatArray:
     return np.asarray(np.sqrt(np.maximum(spectrum, 0.0)))
 
 
-def _errors_at(
-    model: NoiseModel, range_m: FloatArray, elevation: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """Bias and core sigma in rad, and tail, of each column.
-
-    A common factor on the ranges already errs the elevation by sin φ cos φ a unit; the columns'
-    own noise is what is missing to the measured sigma.
-    """
+def _errors_at(model: NoiseModel, range_m: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Bias and core in rad, and tail, of each column."""
+    if not model.bins:
+        none = np.zeros(len(range_m))
+        return none, none, none
     edges = np.array([b.from_m for b in model.bins])
-    table = np.array([[b.bias_deg, b.sigma_deg, b.tail] for b in model.bins])
-    bias, sigma, tail = table[np.searchsorted(edges, range_m, side="right") - 1].T
-    bias, sigma = np.deg2rad(bias), np.deg2rad(sigma)
-    common = np.sin(elevation) * np.cos(elevation) * model.scale_core_std
-    core = np.sqrt(np.maximum(sigma**2 - common**2, (_LEAST_CORE * sigma) ** 2))
-    median = np.exp(tail * _MEDIAN_Z**2 / 2)
-    return bias, core / median, tail
+    table = np.array([[b.bias_deg, b.core_deg, b.tail] for b in model.bins])
+    bias, core, tail = table[np.searchsorted(edges, range_m, side="right") - 1].T
+    return np.deg2rad(bias), np.deg2rad(core), tail
 
 
 def _occluded(ranges: FloatArray, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:

@@ -139,16 +139,17 @@ class ViewCaster:
         Raises:
             InputError: the camera stands in no room and no passage.
         """
-        home = locate(self.building, position, heading) if room is None else room
-        near = self._around(position, home)
-        beyond = {k: self._behind(home, k, depth) for k, depth in (leaks or {}).items()}
+        if room is None:
+            room = int(locate(self.building, position[None], np.array([heading]))[0])
+        near = self._around(position, room)
+        beyond = {k: self._behind(room, k, depth) for k, depth in (leaks or {}).items()}
         angles = heading + column_heading(np.arange(width, dtype=np.float64), width)
         closed, first = _cast(position, angles, near)
         distance, surface, leaked = self._through(position, angles, near, beyond, closed, first)
         return View(
-            room=home,
+            room=room,
             camera_height_m=camera_height_m,
-            ceiling_height_m=self.building.rooms[home].ceiling_height_m,
+            ceiling_height_m=self.building.rooms[room].ceiling_height_m,
             range_m=distance,
             closed_range_m=closed,
             surface=surface,

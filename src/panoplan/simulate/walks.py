@@ -124,29 +124,32 @@ def stills(
     return _walk(building, positions, bob, beta, tilt, height, positions)
 
 
-def locate(building: Building, position: FloatArray, heading: float) -> int:
-    """The room a camera's view is of.
+def locate(building: Building, positions: FloatArray, headings: FloatArray) -> IntArray:
+    """The rooms that cameras' views are of.
 
     Args:
-        building: where it is.
-        position: (2,) plan, metres.
-        heading: rad, from z towards x.
+        building: where they are.
+        positions: (N, 2) plan, metres.
+        headings: (N,) rad, from z towards x.
 
     Returns:
-        Index of the room it stands in; in a doorway, of the room it looks into.
+        (N,) index of the room each stands in; in a doorway, of the room it looks into.
 
     Raises:
-        InputError: it stands in no room and no passage.
+        InputError: one stands in no room and no passage.
     """
-    point = shapely.Point(position)
-    for k, room in enumerate(building.rooms):
-        if shapely.Polygon(room.polygon).covers(point):
-            return k
+    x, z = positions.T
+    found = np.full(len(positions), -1)
     for passage in building.passages:
-        if shapely.Polygon(passage.area).buffer(1e-9).covers(point):
-            ahead = passage.outward @ [np.sin(heading), np.cos(heading)] >= 0
-            return passage.rooms[int(ahead)]
-    raise InputError("camera", f"({position[0]:.3f}, {position[1]:.3f})", "a place inside a room")
+        inside = shapely.intersects_xy(shapely.Polygon(passage.area).buffer(1e-9), x, z)
+        ahead = np.sin(headings) * passage.outward[0] + np.cos(headings) * passage.outward[1] >= 0
+        found[inside] = np.array(passage.rooms)[ahead[inside].astype(np.int64)]
+    for k, room in enumerate(building.rooms):
+        found[shapely.intersects_xy(shapely.Polygon(room.polygon), x, z)] = k
+    if (found < 0).any():
+        lost = positions[found < 0][0]
+        raise InputError("camera", f"({lost[0]:.3f}, {lost[1]:.3f})", "a place inside a room")
+    return found
 
 
 class _Footing:
@@ -357,8 +360,8 @@ def _walk(
     translations = np.stack([positions[:, 0], bob, positions[:, 1]], axis=1)
     rotations = about_y(beta) @ _about_x(tilt[:, 0]) @ _about_z(tilt[:, 1])
     labels = tuple(f"{k:04d}" for k in range(n))
-    rooms = [locate(building, p, float(b)) for p, b in zip(positions, beta, strict=True)]
-    return Walk(Trajectory(labels, rotations, translations), np.array(rooms), height, path)
+    trajectory = Trajectory(labels, rotations, translations)
+    return Walk(trajectory, locate(building, positions, beta), height, path)
 
 
 def about_y(angle: FloatArray) -> FloatArray:
