@@ -276,14 +276,14 @@ def _room_labels(plan: FloorPlan, sheet: Sheet) -> tuple[list[RoomLabel], list[s
     """Labels of the rooms, and the line that tells what the numbers in small rooms mean."""
     labels: list[RoomLabel] = []
     small: list[str] = []
+    cameras = np.array([camera.position for camera in plan.trajectory]).reshape(-1, 2)
+    sizes = (4.4 * sheet.weight, 9.0 * sheet.weight)
     for room in plan.rooms:
         area = room_area(room)
         if area.is_empty or area.area <= 0:
             continue
         name, figure = printable(room.name), _area_text(area.area, plan)
-        label = room_label(
-            area, name, figure, sheet.points_per_unit, 9.0 * sheet.weight, 4.6 * sheet.weight
-        )
+        label = room_label(area, name, figure, sheet.points_per_unit, sizes, cameras)
         if label is None:
             small.append(f"{len(small) + 1} {name}, {figure}")
             label = RoomLabel(label_place(area), (str(len(small)),), 6.0 * sheet.weight)

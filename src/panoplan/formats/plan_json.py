@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import functools
 import json
+import math
+import re
+from collections.abc import Iterable
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -18,51 +21,83 @@ from panoplan.types.arrays import FloatArray, frozen_array
 from panoplan.types.plan import FloorPlan, PlanPose, Room, ScaleEstimate, Skipped, Wall
 
 SCHEMA = 1
+"""Version of the schema that is written and read."""
+
 _DIGITS = 6
 _AXES = (
     "plan [x, y] = [X, Z] of the trajectory's level world times the scale; polygons run "
     "counter-clockwise in it; heading in rad from +y towards +x"
 )
+_NUMBER_LIST = re.compile(r"\[\n\s+((?:-?[0-9.eE+-]+,?\s+)+)\]")
 
 
 def write_plan(path: Path, plan: FloorPlan) -> None:
     """Writes a plan; the same plan gives the same bytes.
 
     Raises:
-        InputError: the place cannot be written.
+        InputError: the plan holds NaN or infinity, or the place cannot be written.
     """
-    write_text(path, json.dumps(plan_to_dict(plan), ensure_ascii=False, indent=1) + "\n")
+    write_text(path, plan_to_text(plan))
 
 
 def read_plan(path: Path) -> FloorPlan:
-    """Reads a plan.
+    """Reads a plan of at most 64 MiB.
 
     Raises:
-        InputError: not readable, or not as the schema wants it.
+        InputError: not readable, not as the schema wants it (with the JSON path), or a number
+            that is not finite.
     """
     data = read_json(path)
     _validate(data, path)
+    where = _not_finite(data, "$")
+    if where is not None:
+        raise InputError(f"{path}, {where}", "NaN or infinity", "a finite number")
     return plan_from_dict(data)
 
 
+def plan_to_text(plan: FloorPlan) -> str:
+    """The plan as JSON text: lists of numbers on one line, a line break at the end.
+
+    Raises:
+        InputError: the plan holds NaN or infinity.
+    """
+    data = plan_to_dict(plan)
+    where = _not_finite(data, "$")
+    if where is not None:
+        raise InputError(f"plan, {where}", "NaN or infinity", "a finite number")
+    text = json.dumps(data, ensure_ascii=False, allow_nan=False, indent=1)
+    # No string of JSON holds a raw line break, so this touches lists of numbers only.
+    return _NUMBER_LIST.sub(lambda match: f"[{' '.join(match[1].split())}]", text) + "\n"
+
+
 def plan_to_dict(plan: FloorPlan) -> dict[str, Any]:
-    """The plan as plain values, lengths and angles rounded to 1e-6."""
+    """The plan as plain values, as the schema wants it.
+
+    Lengths and angles are rounded to 1e-6 of their unit, the scale and the camera height to 9
+    digits; the keys of `settings` are sorted.
+    """
     scale = plan.scale
     return {
         "schema": SCHEMA,
         "version": plan.version,
         "unit": plan.unit,
         "frame": {"axes": _AXES, "level_rotation": _numbers(plan.level_rotation, 12)},
-        "camera_height_m": plan.camera_height_m,
+        "camera_height_m": _factor(plan.camera_height_m),
         "scale": {
-            "ch_per_su": scale.ch_per_su,
+            "ch_per_su": _factor(scale.ch_per_su),
             "method": scale.method,
-            "sigma": scale.sigma,
-            "search_range": None if scale.search_range is None else list(scale.search_range),
-            "at_edge": scale.at_edge,
-            "converged": scale.converged,
-            "keyframes_used": scale.keyframes_used,
-            "curve": None if scale.curve is None else _numbers(scale.curve, 12),
+            "sigma": _factor(scale.sigma),
+            "search_range": (
+                None if scale.search_range is None else [_factor(s) for s in scale.search_range]
+            ),
+            "at_edge": bool(scale.at_edge),
+            "converged": bool(scale.converged),
+            "keyframes_used": int(scale.keyframes_used),
+            "curve": (
+                None
+                if scale.curve is None
+                else [[_factor(value) for value in pair] for pair in scale.curve]
+            ),
         },
         "rooms": [_room_to_dict(room) for room in plan.rooms],
         "doors": [_numbers(s) for s in plan.doors],
@@ -72,16 +107,16 @@ def plan_to_dict(plan: FloorPlan) -> dict[str, Any]:
             {
                 "id": pose.id,
                 "position": _numbers(pose.position),
-                "heading": round(pose.heading, _DIGITS),
+                "heading": _length(pose.heading),
                 "room": pose.room,
             }
             for pose in plan.trajectory
         ],
         "skipped": [
-            {"keyframe": s.keyframe, "what": s.what, "reason": s.reason, "count": s.count}
+            {"keyframe": s.keyframe, "what": s.what, "reason": s.reason, "count": int(s.count)}
             for s in plan.skipped
         ],
-        "settings": plan.settings,
+        "settings": _sorted(plan.settings),
     }
 
 
@@ -117,22 +152,23 @@ def _room_to_dict(room: Room) -> dict[str, Any]:
     if room.polygon is not None:
         # Of the rounded outline, so that a plan read back is written with the same area.
         rings = [np.asarray(_numbers(ring)) for ring in (room.polygon, *room.holes)]
-        area = signed_area(rings[0]) - sum(abs(signed_area(hole)) for hole in rings[1:])
+        holes = sum(abs(signed_area(hole)) for hole in rings[1:])
+        area = max(0.0, abs(signed_area(rings[0])) - holes)
     return {
         "id": room.id,
         "name": room.name,
         "level": room.level,
         "polygon": None if room.polygon is None else _numbers(room.polygon),
         "holes": [_numbers(hole) for hole in room.holes],
-        "failure": room.failure,
-        "area": None if area is None else round(area, _DIGITS),
-        "ceiling_height": room.ceiling_height,
+        "failure": (room.failure or "no shape found") if room.polygon is None else None,
+        "area": _length(area),
+        "ceiling_height": _length(room.ceiling_height),
         "keyframes": list(room.keyframes),
         "walls": [
-            {"id": w.id, "a": _numbers(w.a), "b": _numbers(w.b), "sigma": w.sigma}
+            {"id": w.id, "a": _numbers(w.a), "b": _numbers(w.b), "sigma": _length(w.sigma)}
             for w in room.walls
         ],
-        "orientations": [round(angle, _DIGITS) for angle in room.orientations],
+        "orientations": [_length(angle) for angle in room.orientations],
         "flags": list(room.flags),
     }
 
@@ -158,6 +194,33 @@ def _room_from_dict(data: dict[str, Any]) -> Room:
 def _numbers(array: FloatArray, digits: int = _DIGITS) -> Any:
     # Adding zero turns -0.0 into 0.0.
     return (np.round(np.asarray(array, dtype=float), digits) + 0.0).tolist()
+
+
+def _length(value: float | None) -> float | None:
+    return None if value is None else round(float(value), _DIGITS) + 0.0
+
+
+def _factor(value: float | None) -> float | None:
+    return None if value is None else float(f"{value:.9g}")
+
+
+def _sorted(value: Any) -> Any:
+    """Plain values with sorted keys, tuples as lists."""
+    if isinstance(value, dict):
+        return {str(key): _sorted(value[key]) for key in sorted(value, key=str)}
+    return [_sorted(item) for item in value] if isinstance(value, list | tuple) else value
+
+
+def _not_finite(value: Any, where: str) -> str | None:
+    """JSON path of the first number that is not finite, or None."""
+    items: Iterable[tuple[str, Any]] = ()
+    if isinstance(value, float) and not math.isfinite(value):
+        return where
+    if isinstance(value, dict):
+        items = ((f"{where}.{key}", item) for key, item in value.items())
+    elif isinstance(value, list):
+        items = ((f"{where}[{k}]", item) for k, item in enumerate(value))
+    return next((found for path, item in items if (found := _not_finite(item, path))), None)
 
 
 def _array(values: Any) -> FloatArray:
