@@ -54,7 +54,7 @@ def read_boundaries_npy(path: Path, *, pixel_centre: float = 0.5) -> Layout:
         )
     shift = 0.5 - pixel_centre
     width = rows.shape[1]
-    wanted = np.arange(width) + shift
+    wanted = np.arange(width, dtype=np.float64) + shift
     corners = None
     if len(rows) == 3 and not np.isnan(rows[2]).all():
         if np.nanmin(rows[2]) < 0 or np.nanmax(rows[2]) > 1:
@@ -162,7 +162,7 @@ def wall_ranges(polygon: FloatArray, width: int) -> FloatArray:
     Returns:
         (width,) distances, NaN where no wall is met.
     """
-    heading = column_heading(np.arange(width), width)
+    heading = column_heading(np.arange(width, dtype=np.float64), width)
     dx, dz = np.sin(heading)[:, None], np.cos(heading)[:, None]
     ax, az = polygon.T
     ex, ez = (np.roll(polygon, -1, axis=0) - polygon).T

@@ -116,7 +116,7 @@ def read_sequence(folder: Path) -> Sequence:
         if twice:
             raise InputError(path, f"two keyframes of {field} {twice[0]}", f"one a {field}")
     return Sequence(
-        _name(data.get("name", folder.resolve().name), path, "name"),
+        _name(data.get("name", folder.resolve().name or "scene"), path, "name"),
         None if size is None else (size[0], size[1]),
         _height(data.get("camera_height"), path),
         tuple(sorted(entries, key=lambda entry: entry.order)),

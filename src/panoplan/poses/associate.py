@@ -1,8 +1,9 @@
-"""Which layout belongs to which pose."""
+"""Which panorama belongs to which pose."""
 
 from __future__ import annotations
 
 import re
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import PurePosixPath
@@ -10,6 +11,8 @@ from pathlib import PurePosixPath
 import numpy as np
 
 from panoplan.errors import InputError
+
+_ENDINGS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".npz", ".npy", ".json"}
 
 
 @dataclass(frozen=True)
@@ -27,6 +30,9 @@ class Panorama:
     order: int | None = None
 
 
+Matches = tuple[Panorama | None, ...]
+
+
 @dataclass(frozen=True)
 class Association:
     """Poses and panoramas that belong together.
@@ -36,14 +42,19 @@ class Association:
         rule: how they were matched, in words.
     """
 
-    panoramas: tuple[Panorama | None, ...]
+    panoramas: Matches
     rule: str
 
 
-def associate(labels: Sequence[str], panoramas: Sequence[Panorama], source: str) -> Association:
+def associate(labels: Sequence[str], panoramas: Sequence[Panorama], source: object) -> Association:
     """Matches the labels of a trajectory with panoramas.
 
-    By id, by file stem, by order and by time; the rule that matches most poses is used.
+    Rules: by id; by file stem (of the image, or the id); by order (a whole number that a panorama
+    lists; where none lists one and there are as many panoramas as poses with rising numbers, the
+    first to the first); by time (nearest within half the median interval of the poses). A rule
+    that would give one panorama to two poses is none. The rule that matches most poses is used; a
+    rule that disagrees with it makes the match ambiguous, unless the first one matches all poses
+    or all panoramas and the other one does not.
 
     Args:
         labels: N first columns of the trajectory.
@@ -54,102 +65,128 @@ def associate(labels: Sequence[str], panoramas: Sequence[Panorama], source: str)
         The association.
 
     Raises:
-        InputError: two panoramas with one id; no rule matches; two rules match equally many poses
-            and disagree.
+        InputError: a label or an id twice; no rule matches; or the match is ambiguous.
     """
-    ids = [p.id for p in panoramas]
-    for name in ids:
-        if ids.count(name) > 1:
-            raise InputError(source, f"two panoramas named {name}", "one panorama an id")
-    matches = {
+    _check_unique(labels, "poses labelled", source)
+    _check_unique([p.id for p in panoramas], "panoramas named", source)
+    matches = _all_matches(labels, panoramas)
+    best = max(matches, key=lambda rule: _count(matches[rule]), default="id")
+    most = _count(matches[best]) if matches else 0
+    if most == 0:
+        shown = ", ".join(p.id for p in panoramas[:3]) or "(there are none)"
+        raise InputError(
+            source,
+            f"labels such as {', '.join(labels[:3])} that match no layout",
+            f"ids, file stems, orders or times of layouts such as {shown}",
+        )
+    complete = most == min(len(labels), len(panoramas))
+    for rule, other in matches.items():
+        if complete and _count(other) < most:
+            continue
+        k = _first_conflict(matches[best], other)
+        if k is not None:
+            here, there = (_told(m[k]) for m in (matches[best], other))
+            raise InputError(
+                source,
+                f"the label {labels[k]}, which is {here} by {best} and {there} by {rule}",
+                "labels that fit the layouts in one way",
+            )
+    return Association(matches[best], f"{most} of {len(labels)} poses matched by {best}")
+
+
+def _all_matches(labels: Sequence[str], panoramas: Sequence[Panorama]) -> dict[str, Matches]:
+    candidates = {
         "id": _by_key(labels, [p.id for p in panoramas], panoramas),
         "file stem": _by_key(
-            [PurePosixPath(label).stem for label in labels],
-            [PurePosixPath(p.image).stem or p.id for p in panoramas],
+            [_stem(label) for label in labels],
+            [_stem(p.image or p.id) for p in panoramas],
             panoramas,
         ),
         "order": _by_order(labels, panoramas),
         "time": _by_time(labels, panoramas),
     }
-    counts = {rule: sum(p is not None for p in found) for rule, found in matches.items()}
-    most = max(counts.values())
-    if most == 0:
-        shown = ", ".join(ids[:3])
-        raise InputError(
-            source,
-            f"labels such as {labels[0]!r} that match no layout",
-            f"ids, file stems, orders or times of layouts such as {shown}",
-        )
-    best = [rule for rule, count in counts.items() if count == most]
-    for rule in best[1:]:
-        if matches[rule] != matches[best[0]]:
-            here, there = (
-                _first_difference(matches[a], matches[b])
-                for a, b in ((best[0], rule), (rule, best[0]))
-            )
-            raise InputError(
-                source,
-                f"labels that fit by {best[0]} ({here}) and by {rule} ({there})",
-                "labels that fit the layouts in one way",
-            )
-    return Association(
-        tuple(matches[best[0]]), f"{most} of {len(labels)} poses matched by {best[0]}"
-    )
+    return {rule: found for rule, found in candidates.items() if _count(found) and _single(found)}
 
 
-def _first_difference(one: Sequence[Panorama | None], other: Sequence[Panorama | None]) -> str:
-    for k, (a, b) in enumerate(zip(one, other, strict=True)):
-        if a != b:
-            return f"pose {k + 1} is {a.id if a else 'none'}"
-    return ""
+def _count(matches: Matches) -> int:
+    return sum(p is not None for p in matches)
 
 
-def _by_key(
-    labels: Sequence[str], keys: Sequence[str], panoramas: Sequence[Panorama]
-) -> list[Panorama | None]:
+def _single(matches: Matches) -> bool:
+    """Whether no panorama is given to two poses."""
+    ids = [p.id for p in matches if p is not None]
+    return len(set(ids)) == len(ids)
+
+
+def _first_conflict(one: Matches, other: Matches) -> int | None:
+    """The first pose that two rules give to different panoramas."""
+    pairs = enumerate(zip(one, other, strict=True))
+    return next((k for k, (a, b) in pairs if a is not None and b is not None and a != b), None)
+
+
+def _told(panorama: Panorama | None) -> str:
+    return "none" if panorama is None else panorama.id
+
+
+def _by_key(labels: Sequence[str], keys: Sequence[str], panoramas: Sequence[Panorama]) -> Matches:
     known = dict(zip(keys, panoramas, strict=True))
     if len(known) < len(keys):
-        return [None] * len(labels)
-    return [known.get(label) for label in labels]
+        return ()
+    return tuple(known.get(label) for label in labels)
 
 
-def _by_order(labels: Sequence[str], panoramas: Sequence[Panorama]) -> list[Panorama | None]:
+def _by_order(labels: Sequence[str], panoramas: Sequence[Panorama]) -> Matches:
     """By the listed order; without one, first to first where there are as many of both."""
     known = {p.order: p for p in panoramas if p.order is not None}
-    numbers = [_whole(label) for label in labels]
     if known:
-        return [None if n is None else known.get(n) for n in numbers]
-    counted = all(n is not None for n in numbers)
-    if counted and len(labels) == len(panoramas):
-        return [*sorted(panoramas, key=lambda p: _natural(p.id))]
-    return [None] * len(labels)
+        numbers = [int(s) if re.fullmatch(r"\d{1,18}", s) else None for s in labels]
+        return tuple(None if n is None else known.get(n) for n in numbers)
+    values = [_number(label) for label in labels]
+    rising = None not in values and np.all(np.diff(np.array(values, dtype=float)) > 0)
+    if rising and len(labels) == len(panoramas):
+        return tuple(sorted(panoramas, key=lambda p: _natural(p.id)))
+    return ()
 
 
-def _by_time(labels: Sequence[str], panoramas: Sequence[Panorama]) -> list[Panorama | None]:
+def _by_time(labels: Sequence[str], panoramas: Sequence[Panorama]) -> Matches:
     """By the nearest time stamp within half the median interval of the poses."""
+    times, stamps = [_time(label) for label in labels], [_time(_stem(p.id)) for p in panoramas]
+    if len(labels) < 2 or not stamps or None in times or None in stamps:
+        return ()
+    at, have = np.array(times, dtype=float), np.array(stamps, dtype=float)
+    reach = float(np.median(np.diff(np.sort(at)))) / 2
     found: list[Panorama | None] = [None] * len(labels)
-    times, stamps = [_decimal(label) for label in labels], [_decimal(p.id) for p in panoramas]
-    if len(labels) < 2 or None in times or None in stamps:
-        return found
-    at = np.array(times, dtype=float)
-    have = np.array(stamps, dtype=float)
-    reach = float(np.median(np.abs(np.diff(at)))) / 2
-    for k, time in enumerate(at):
-        nearest = int(np.argmin(np.abs(have - time)))
-        if abs(have[nearest] - time) <= reach:
-            found[k] = panoramas[nearest]
-    taken = [p.id for p in found if p is not None]
-    return found if len(set(taken)) == len(taken) else [None] * len(labels)
+    # From the panoramas, which may be far fewer than the poses.
+    for stamp, panorama in zip(have, panoramas, strict=True):
+        nearest = int(np.argmin(np.abs(at - stamp)))
+        if abs(at[nearest] - stamp) <= reach:
+            if found[nearest] is not None:
+                return ()
+            found[nearest] = panorama
+    return tuple(found)
 
 
-def _whole(label: str) -> int | None:
-    return int(label) if re.fullmatch(r"\d{1,18}", label) else None
+def _check_unique(names: Sequence[str], what: str, source: object) -> None:
+    for name, count in Counter(names).items():
+        if count > 1:
+            raise InputError(source, f"two {what} {name}", "each name once")
 
 
-def _decimal(label: str) -> float | None:
-    return float(label) if re.fullmatch(r"\d{1,20}\.\d{1,20}", label) else None
+def _stem(name: str) -> str:
+    """The last part of a path without the ending of an image or layout; a time keeps its dot."""
+    path = PurePosixPath(name)
+    return path.stem if path.suffix.lower() in _ENDINGS else path.name
 
 
-def _natural(name: str) -> list[tuple[int, int | str]]:
+def _number(label: str) -> float | None:
+    return float(label) if re.fullmatch(r"\d{1,20}(\.\d{1,20})?(e\+?\d{1,2})?", label) else None
+
+
+def _time(label: str) -> float | None:
+    """A number that can be a time: with decimals, or nine digits and more."""
+    return _number(label) if re.fullmatch(r"\d{9,20}|\d{1,20}\.\d.*", label) else None
+
+
+def _natural(name: str) -> list[tuple[int, int, str]]:
     parts = re.split(r"(\d+)", name)
-    return [(0, int(part)) if part.isdigit() else (1, part) for part in parts]
+    return [(0, int(s[:1000]), "") if s.isdecimal() else (1, 0, s) for s in parts]

@@ -14,8 +14,10 @@ def level(trajectory: Trajectory) -> tuple[Trajectory, FloatArray]:
     """Turns a trajectory so that gravity points along +y.
 
     Gravity is the geometric median of the cameras' down axes: people hold a 360° camera upright,
-    and a few tilted ones do not move a median. The turn is the smallest one and is always made,
-    so a tilted world gives the same level one, exactly.
+    and a few tilted ones do not move a median. It says which way is down too, so a world whose y
+    axis points up is turned over. The turn is the smallest one and is always made: a level world
+    that was tilted comes back as it was, and any tilted world gives the same level one up to a
+    turn about the vertical.
 
     Args:
         trajectory: N ≥ 1 poses in any world.
@@ -23,8 +25,7 @@ def level(trajectory: Trajectory) -> tuple[Trajectory, FloatArray]:
     Returns:
         The level trajectory, and (3, 3) level_from_world.
     """
-    down = _geometric_median(trajectory.rotations[:, :, 1])
-    turn = _smallest_turn(down)
+    turn = _smallest_turn(gravity(trajectory))
     return (
         Trajectory(
             trajectory.labels, turn @ trajectory.rotations, trajectory.translations @ turn.T
@@ -33,20 +34,32 @@ def level(trajectory: Trajectory) -> tuple[Trajectory, FloatArray]:
     )
 
 
-def _geometric_median(directions: FloatArray) -> FloatArray:
-    median = np.median(directions, axis=0)
+def gravity(trajectory: Trajectory) -> FloatArray:
+    """(3,) unit vector of gravity in the world: the cameras' median down axis."""
+    return _median_direction(trajectory.rotations[:, :, 1])
+
+
+def _median_direction(directions: FloatArray) -> FloatArray:
+    """Geometric median of (N, 3) unit vectors, by Weiszfeld's iteration from their mean.
+
+    Each iterate turns with the directions, so the answer does however far it has converged.
+    """
+    median = directions.mean(axis=0)
     for _ in range(_ITERATIONS):
         distance = np.maximum(np.linalg.norm(directions - median, axis=1), 1e-9)
         median = (directions / distance[:, None]).sum(axis=0) / (1 / distance).sum()
-    return np.asarray(median / np.linalg.norm(median))
+    length = float(np.linalg.norm(median))
+    # As many cameras up as down: the first one decides.
+    return np.asarray(median / length if length > 1e-6 else directions[0])
 
 
 def _smallest_turn(down: FloatArray) -> FloatArray:
-    """(3, 3) rotation about a horizontal axis that takes `down` to +y."""
-    axis = np.cross(down, [0.0, 1.0, 0.0])
-    cos = float(down[1])
-    if cos < -1 + 1e-12:
-        return np.diag([1.0, -1.0, -1.0])
-    x, y, z = axis
-    skew = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    return np.asarray(np.eye(3) + skew + skew @ skew / (1 + cos))
+    """(3, 3) rotation about a horizontal axis that takes the unit vector `down` to +y."""
+    x, y, z = (float(value) for value in down)
+    sin = float(np.hypot(x, z))
+    if sin == 0:
+        return np.eye(3) if y > 0 else np.diag([1.0, -1.0, -1.0])
+    # The axis is down × y; (sin, cos) need no division by 1 + cos, which vanishes for y up.
+    ax, az = -z / sin, x / sin
+    skew = np.array([[0, -az, 0], [az, 0, -ax], [0, ax, 0]])
+    return np.asarray(np.eye(3) + sin * skew + (1 - y) * (skew @ skew))
