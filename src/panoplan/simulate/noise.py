@@ -23,6 +23,9 @@ GROSS_SHARE = 0.15
 _REFERENCE_WIDTH = 1024
 _STEEPEST_RAD, _SHALLOWEST_RAD = np.deg2rad(-89.99), np.deg2rad(-1.5)
 _CEILING_CORRELATION = 0.6
+_LARGEST_ERROR_RAD = np.deg2rad(60.0)
+_TAIL_SMOOTHING_COLUMNS = 6.0
+"""What swells an error changes slowly, so that a gross error is a stretch and no spike."""
 _PERCENTILE_90_Z = 1.2815515655446004
 
 
@@ -33,9 +36,10 @@ class DistanceBin:
     Attributes:
         from_m: the bin's lower end; it reaches to that of the next.
         bias_deg: median error of the elevation, predicted less true.
-        core_deg: c of the columns' own error c·z·exp(h·z²/2), z standard Gaussian.
-        tail: h ≥ 0 of the same (Tukey's h distribution): how much heavier than a Gaussian's
-            the tails are.
+        core_deg: c of the columns' own error c·z·exp(h·y²/2), z standard Gaussian noise along
+            the columns, y the same smoothed.
+        tail: h ≥ 0 of the same (nearly Tukey's h distribution): how much heavier than a
+            Gaussian's the tails are.
     """
 
     from_m: float
@@ -96,8 +100,8 @@ TARGET_GROSS_SHARE = (*MEASURED.gross_share, _BEYOND_6_M_GROSS)
 # themselves. At 1.5-2 m hard's scale error alone has the target sigma: its core is kept at
 # 0.05°, which leaves the total 7 % above.
 _MILD_CORES_DEG = (0.835, 0.526, 0.224, 0.437, 0.626, 0.786, 1.013)
-_HARD_CORES_DEG = (0.445, 0.273, 0.050, 0.170, 0.446, 0.472, 0.760)
-_HARD_TAILS = (1.55, 0.86, 1.52, 1.24, 0.54, 1.35, 0.93)
+_HARD_CORES_DEG = (0.447, 0.275, 0.050, 0.171, 0.446, 0.472, 0.755)
+_HARD_TAILS = (1.56, 0.86, 1.53, 1.25, 0.54, 1.37, 0.97)
 
 
 def _mild_bins() -> tuple[DistanceBin, ...]:
@@ -250,15 +254,16 @@ def noisy_layout(view: View, model: NoiseModel, rng: np.random.Generator) -> Lay
         ranges, edges = _occluded(ranges, rng)
         corners = np.append(corners, edges)
     factor = scale_factor(model, rng) * (1 + model.height_jitter * rng.standard_normal())
-    field = column_field(width, rng)
+    field, calm = _column_fields(width, rng)
     bias, core, tail = _errors_at(model, view.range_m)
-    error = bias + core * field * np.exp(tail * field**2 / 2)
+    own = core * field * np.exp(tail * calm**2 / 2)
+    error = bias + _LARGEST_ERROR_RAD * np.tanh(own / _LARGEST_ERROR_RAD)
     elevation = -np.arctan2(view.camera_height_m, ranges * factor) + error
     elevation = np.clip(elevation, _STEEPEST_RAD, _SHALLOWEST_RAD)
     elevation = _with_gross(elevation, view, model, rng)
-    own = column_field(width, rng)
+    apart = column_field(width, rng)
     shared = _CEILING_CORRELATION
-    ceiling = view.ceiling_boundary - core * (shared * field + np.sqrt(1 - shared**2) * own)
+    ceiling = view.ceiling_boundary - core * (shared * field + np.sqrt(1 - shared**2) * apart)
     return Layout(elevation, ceiling, noisy_corners(corners, width, model, rng))
 
 
@@ -272,8 +277,17 @@ def column_field(width: int, rng: np.random.Generator) -> FloatArray:
     Returns:
         (W,) of unit variance.
     """
+    return _column_fields(width, rng)[0]
+
+
+def _column_fields(width: int, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+    """A field as `column_field` gives it and a smoothed one of unit variance that follows it."""
     white = np.fft.rfft(rng.standard_normal(width))
-    return np.asarray(np.fft.irfft(white * _amplitudes(width), n=width))
+    rough, smooth = _amplitudes(width)
+    return (
+        np.asarray(np.fft.irfft(white * rough, n=width)),
+        np.asarray(np.fft.irfft(white * smooth, n=width)),
+    )
 
 
 def correlation(lag: FloatArray) -> FloatArray:
@@ -283,11 +297,16 @@ def correlation(lag: FloatArray) -> FloatArray:
 
 
 @lru_cache(maxsize=8)
-def _amplitudes(width: int) -> FloatArray:
+def _amplitudes(width: int) -> tuple[FloatArray, FloatArray]:
+    """Gains that give white noise the columns' correlation, and the same with smoothing."""
     column = np.arange(width)
     lag = np.minimum(column, width - column) * (_REFERENCE_WIDTH / width)
-    spectrum = np.fft.rfft(correlation(lag)).real
-    return np.asarray(np.sqrt(np.maximum(spectrum, 0.0)))
+    spectrum = np.maximum(np.fft.rfft(correlation(lag)).real, 0.0)
+    blur = np.exp(-(np.minimum(lag / _TAIL_SMOOTHING_COLUMNS, 30.0) ** 2) / 2)
+    passed = np.fft.rfft(blur / blur.sum()).real
+    smoothed = spectrum * passed**2
+    variance = np.fft.irfft(smoothed, n=width)[0]
+    return np.sqrt(spectrum), np.sqrt(smoothed / variance)
 
 
 def _errors_at(model: NoiseModel, range_m: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
