@@ -64,13 +64,13 @@ class ScaleConfig:
         paper=0.2,
     )
     warmup_min: int = _setting(
-        12,
-        "Fewest keyframes before the estimate may count as settled: one window and two more.",
+        20,
+        "Fewest keyframes before the first estimate: two windows.",
         low=2,
         high=10_000,
     )
     warmup_max: int = _setting(
-        120,
+        150,
         "The scale is frozen after so many keyframes in any case, so that a stream starts.",
         low=2,
         high=100_000,
@@ -82,13 +82,13 @@ class ScaleConfig:
         high=10.0,
     )
     settle_tolerance: float = _setting(
-        0.01,
+        0.005,
         "Estimates within this share of one another count as the same.",
         low=0.0,
         high=1.0,
     )
     settle_count: int = _setting(
-        3,
+        4,
         "So many estimates in a row must be the same for the scale to be frozen.",
         low=2,
         high=1000,
@@ -128,7 +128,7 @@ class ScaleConfig:
         paper=False,
     )
     cells_ch: tuple[float, ...] = _setting(
-        (0.02, 0.03, 0.05),
+        (0.03, 0.05),
         "Cell sizes of the histogram; entropies are averaged over them. Near the noise of a good "
         "layout: wider cells cannot see a misalignment of a few centimetres.",
         unit="camera heights",

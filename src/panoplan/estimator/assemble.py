@@ -32,11 +32,13 @@ def assemble(state: State, config: Config) -> FloorPlan:
         None, "unknown", converged=False, keyframes_used=len(state.waiting)
     )
     ch_per_su = scale.ch_per_su or 0.0
-    height_m = state.walk.camera_height_m
-    if height_m is None and state.walk.trajectory_unit == "m" and ch_per_su:
-        height_m = 1.0 / ch_per_su
-    unit: Unit = "ch" if height_m is None else "m"
-    length = height_m or 1.0
+    # Metres a unit of length of the method: the first camera's height.
+    length = 1.0
+    unit: Unit = "ch"
+    if state.walk.trajectory_unit == "m" and ch_per_su:
+        length, unit = 1.0 / ch_per_su, "m"
+    elif state.walk.camera_height_m is not None:
+        length, unit = state.walk.camera_height_m / state.median_height, "m"
     frame = state.frame
     world_from_walk = np.eye(2) if frame is None else frame.walk_from_world.T
     origin = np.zeros(2) if frame is None else ch_per_su * frame.origin_su[[0, 2]]
@@ -62,7 +64,7 @@ def assemble(state: State, config: Config) -> FloorPlan:
         unit=unit,
         level_rotation=np.eye(3),
         scale=scale,
-        camera_height_m=height_m,
+        camera_height_m=length * state.median_height if unit == "m" else None,
         rooms=tuple(rooms),
         trajectory=trajectory,
         skipped=state.skipped,

@@ -17,7 +17,8 @@ class Walk:
 
     Attributes:
         trajectory_unit: "m" where the trajectory is metric, else "unknown".
-        camera_height_m: of the first keyframe above the floor in metres, or None.
+        camera_height_m: of the cameras above the floor in metres, or None; where they bob, of the
+            median one of the warm-up.
         expected_keyframes: length of the walk, needed where the warm-up is a fraction of it.
     """
 
@@ -84,6 +85,7 @@ class State:
         estimates: scales of the warm-up so far, for the test whether they have settled.
         next_estimate: number of waiting layouts at which the next estimate is due.
         scale: frozen scale; None while keyframes wait.
+        median_height: of the warm-up's cameras, in heights of the first.
         rooms: by number.
         current: index into `rooms` of the room last assigned.
         cameras: every keyframe fed, in order.
@@ -97,6 +99,7 @@ class State:
     estimates: tuple[float, ...] = ()
     next_estimate: int = 0
     scale: ScaleEstimate | None = None
+    median_height: float = 1.0
     rooms: tuple[RoomState, ...] = ()
     current: int | None = None
     cameras: tuple[PlacedCamera, ...] = ()

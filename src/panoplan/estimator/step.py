@@ -95,6 +95,8 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
 def _warm_up(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
     count, mode = len(state.waiting), config.scale.warmup
     if state.walk.trajectory_unit == "m" and state.walk.camera_height_m:
+        if count < config.scale.warmup_min:
+            return state, ()
         return _freeze(state, _estimate(state, config), config)
     if mode == "converged":
         due = max(state.next_estimate, config.scale.warmup_min)
@@ -127,7 +129,10 @@ def _warm_up(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
 def _estimate(state: State, config: Config) -> ScaleEstimate:
     walk = state.walk
     if walk.trajectory_unit == "m" and walk.camera_height_m:
-        return ScaleEstimate(1.0 / walk.camera_height_m, "given")
+        # The height given is the median camera's; the unit of length is the first one's.
+        rise_m = float(np.median([view.rise_su for view in state.waiting]))
+        first_m = max(walk.camera_height_m - rise_m, walk.camera_height_m / 10)
+        return ScaleEstimate(1.0 / first_m, "given", keyframes_used=len(state.waiting))
     if len(state.waiting) < 2:
         return ScaleEstimate(None, "unknown", converged=False, keyframes_used=len(state.waiting))
     return scale.recover_scale(state.waiting, config.scale)
@@ -137,7 +142,9 @@ def _freeze(
     state: State, estimate: ScaleEstimate, config: Config
 ) -> tuple[State, tuple[Event, ...]]:
     waiting = state.waiting
-    state = replace(state, scale=estimate, waiting=())
+    rises = [view.rise_su for view in waiting]
+    median_height = 1.0 + (estimate.ch_per_su or 0.0) * float(np.median(rises))
+    state = replace(state, scale=estimate, median_height=median_height, waiting=())
     events: list[Event] = [ScaleFrozen(estimate)]
     for view in waiting:
         state, told = _place(state, view, config)
