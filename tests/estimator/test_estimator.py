@@ -1,0 +1,199 @@
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from shapely import Point, Polygon
+from tests.scenes import L_SHAPE, RECTANGLE, T_SHAPE, exact_layout, walk, yaw
+
+from panoplan.config import Config, override
+from panoplan.errors import ConfigError, InputError
+from panoplan.estimator.front import FloorPlanEstimator
+from panoplan.estimator.state import Walk
+from panoplan.formats.plan_json import plan_to_text
+from panoplan.formats.state import read_state, write_state
+from panoplan.types.events import KeyframeWaiting, RoomOpened, RoomShaped, ScaleFrozen
+from panoplan.types.keyframe import Keyframe
+from panoplan.types.pose import Pose
+
+EARLY = override(Config(), {"scale": {"warmup": 8}})
+NEXT = np.array([4.1, 0.0])
+SHAPES = {"rectangle": RECTANGLE, "L": L_SHAPE, "T": T_SHAPE}
+
+
+def _cameras(polygon, count=14):
+    rng = np.random.default_rng(3)
+    low, high = polygon.min(axis=0), polygon.max(axis=0)
+    inner = Polygon(polygon).buffer(-0.4)
+    spots = []
+    while len(spots) < count:
+        spot = rng.uniform(low, high)
+        if inner.contains(Point(spot)):
+            spots.append(spot)
+    return np.array(spots)
+
+
+def _plan(keyframes, config=EARLY, walk_=None):
+    estimator = FloorPlanEstimator(config, walk_)
+    for keyframe in keyframes:
+        estimator.update(keyframe)
+    estimator.finish()
+    return estimator.plan()
+
+
+def _two_rooms(factor=1.0):
+    left = walk(RECTANGLE, _cameras(RECTANGLE, 10), factor=factor)
+    right = walk(RECTANGLE + NEXT, _cameras(RECTANGLE, 10) + NEXT, factor=factor)
+    return left + [replace(k, id="r" + k.id) for k in right]
+
+
+@pytest.mark.parametrize("name", SHAPES)
+def test_exact_layouts_give_the_exact_shape(name):
+    polygon = SHAPES[name]
+    plan = _plan(walk(polygon, _cameras(polygon)))
+    (room,) = plan.rooms
+    found, true = Polygon(room.polygon), Polygon(polygon)
+    assert len(room.polygon) == len(polygon)
+    assert found.intersection(true).area / found.union(true).area > 0.96
+    gaps = np.linalg.norm(room.polygon[:, None] - polygon[None], axis=2).min(axis=0)
+    assert gaps.max() < 0.07
+
+
+def test_events_of_a_walk_through_two_rooms():
+    estimator = FloorPlanEstimator(EARLY)
+    events = [event for k in _two_rooms() for event in estimator.update(k)]
+    assert sum(isinstance(event, KeyframeWaiting) for event in events) == 8
+    (frozen,) = (event for event in events if isinstance(event, ScaleFrozen))
+    assert frozen.scale.ch_per_su == pytest.approx(1.0, rel=0.02)
+    assert [e.room for e in events if isinstance(e, RoomOpened)] == ["room_01", "room_02"]
+    assert [e.room for e in events if isinstance(e, RoomShaped)] == ["room_01"]
+    plan = estimator.plan()
+    assert plan.rooms[0].polygon is not None
+    assert plan.rooms[1].failure == "the camera has not left it yet"
+    assert [e.room for e in estimator.finish()] == ["room_02"]
+
+
+def test_a_room_is_shaped_again_when_the_camera_returns():
+    keyframes = _two_rooms()
+    back = [replace(k, id="b" + k.id) for k in keyframes[:3]]
+    again = [replace(k, id="c" + k.id) for k in keyframes[10:14]]
+    estimator = FloorPlanEstimator(EARLY)
+    shaped = [
+        event.room
+        for k in [*keyframes, *back, *again]
+        for event in estimator.update(k)
+        if isinstance(event, RoomShaped)
+    ]
+    assert shaped == ["room_01", "room_02", "room_01"]
+    assert len(estimator.plan().rooms) == 2
+
+
+def test_stream_batch_and_resume_give_the_same_bytes(tmp_path):
+    keyframes = _two_rooms()
+    whole = plan_to_text(_plan(keyframes))
+    for cut in (0, 1, 7, 8, 13, 20):
+        estimator = FloorPlanEstimator(EARLY)
+        for keyframe in keyframes[:cut]:
+            estimator.update(keyframe)
+            estimator.plan()
+        write_state(tmp_path / "state.npz", estimator.state, "same")
+        state, fingerprint = read_state(tmp_path / "state.npz")
+        assert fingerprint == "same"
+        resumed = FloorPlanEstimator(EARLY, state=state)
+        for keyframe in keyframes[cut:]:
+            resumed.update(keyframe)
+        resumed.finish()
+        assert plan_to_text(resumed.plan()) == whole
+
+
+@pytest.mark.parametrize("factor", [0.01, 0.1, 10.0, 100.0])
+def test_the_plan_does_not_depend_on_the_unit_of_the_trajectory(factor):
+    one, other = _plan(_two_rooms()), _plan(_two_rooms(factor))
+    for a, b in zip(one.rooms, other.rooms, strict=True):
+        np.testing.assert_allclose(a.polygon, b.polygon, rtol=1e-3, atol=1e-3)
+
+
+def test_turning_and_shifting_the_world_turns_and_shifts_the_plan():
+    keyframes = _two_rooms()
+    plan = _plan(keyframes)
+    turn, shift = yaw(0.83), np.array([12.0, -0.7, 31.0])
+    moved = [
+        replace(k, pose=Pose(turn @ k.pose.rotation, turn @ k.pose.translation + shift))
+        for k in keyframes
+    ]
+    other = _plan(moved)
+    s = plan.scale.ch_per_su
+    for a, b in zip(plan.rooms, other.rooms, strict=True):
+        expected = a.polygon @ turn[np.ix_([0, 2], [0, 2])].T + s * shift[[0, 2]]
+        np.testing.assert_allclose(b.polygon, expected, atol=1e-3)
+
+
+def test_the_plan_is_metric_where_the_camera_height_is_known():
+    keyframes = _two_rooms(factor=3.0)
+    ch = _plan(keyframes)
+    metric = _plan(keyframes, walk_=Walk(camera_height_m=1.6))
+    assert (ch.unit, metric.unit) == ("ch", "m")
+    np.testing.assert_allclose(metric.rooms[0].polygon, 1.6 * ch.rooms[0].polygon)
+    assert metric.camera_height_m == pytest.approx(1.6)
+
+
+def test_a_metric_trajectory_gives_the_camera_height_for_free():
+    cameras = _cameras(RECTANGLE)
+    keyframes = walk(RECTANGLE, cameras, factor=1 / 1.5)
+    plan = _plan(keyframes, walk_=Walk(trajectory_unit="m"))
+    assert plan.unit == "m"
+    assert plan.camera_height_m == pytest.approx(1.5, rel=0.01)
+
+
+def test_bobbing_cameras_do_not_change_the_rooms():
+    cameras = _cameras(RECTANGLE)
+    rises = 0.05 * np.sin(np.arange(len(cameras)))
+    flat, bobbing = (_plan(walk(RECTANGLE, cameras, rises=r)) for r in (None, rises))
+    np.testing.assert_allclose(flat.rooms[0].polygon, bobbing.rooms[0].polygon, atol=0.03)
+
+
+def test_one_keyframe_is_a_plan_of_one_room_in_camera_heights():
+    plan = _plan(walk(RECTANGLE, [[0.3, 0.2]]))
+    assert plan.unit == "ch"
+    assert plan.scale.ch_per_su is None
+    (room,) = plan.rooms
+    assert Polygon(room.polygon).area == pytest.approx(12.0, rel=0.03)
+
+
+def test_no_keyframe_is_a_plan_without_rooms():
+    assert _plan([]).rooms == ()
+
+
+def test_keyframes_without_layout_are_placed_and_counted():
+    keyframes = walk(RECTANGLE, _cameras(RECTANGLE))
+    keyframes[3] = replace(keyframes[3], layout=None, missing="it is gone")
+    plan = _plan(keyframes)
+    assert len(plan.trajectory) == len(keyframes)
+    assert plan.trajectory[3].room is None
+    assert [s.reason for s in plan.skipped if s.what == "keyframe"] == ["it is gone"]
+
+
+def test_an_id_given_twice_is_refused_and_changes_nothing():
+    estimator = FloorPlanEstimator()
+    (keyframe,) = walk(RECTANGLE, [[0.0, 0.0]])
+    estimator.update(keyframe)
+    before = estimator.state
+    with pytest.raises(InputError, match="given before"):
+        estimator.update(keyframe)
+    assert estimator.state is before
+
+
+def test_a_fraction_needs_the_length_of_the_walk():
+    config = override(Config(), {"scale": {"warmup": 0.2}})
+    (keyframe,) = walk(RECTANGLE, [[0.0, 0.0]])
+    with pytest.raises(ConfigError, match="known length"):
+        FloorPlanEstimator(config).update(keyframe)
+    plan = _plan(_two_rooms(), config, Walk(expected_keyframes=20))
+    assert plan.scale.keyframes_used == 4
+
+
+def test_a_camera_that_stands_below_the_floor_is_left_out():
+    keyframes = walk(RECTANGLE, _cameras(RECTANGLE))
+    sunk = Pose(np.eye(3), [0.0, 1.5, 0.0])
+    layout = exact_layout(RECTANGLE, np.zeros(2), np.eye(3))
+    plan = _plan([*keyframes, Keyframe("sunk", sunk, layout)])
+    assert plan.skipped[-1].reason == "its pose lies below the floor"
