@@ -52,12 +52,15 @@ class Shown:
         path: the cameras.
         labels: names and areas.
         footer: scale bar, totals and notes.
+        note_lines: space kept for so many lines of notes, whether or not there is a footer, so
+            that several drawings come out alike; None for as many as the notes need.
     """
 
     corners: bool = True
     path: bool = True
     labels: bool = True
     footer: bool = True
+    note_lines: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -125,7 +128,7 @@ def draw_plan(
     colours: Mapping[str, str] | None = None,
     bounds: tuple[FloatArray, FloatArray] | None = None,
     title: str = "",
-) -> None:
+) -> Sheet:
     """Draws a plan seen from above: first axis to the right, second up, both at one scale.
 
     The limits of the axes are set so that all of it fits; their frame and ticks are hidden.
@@ -138,15 +141,18 @@ def draw_plan(
         colours: fill by room id, instead of those of `room_colours`.
         bounds: least and greatest coordinates to be shown, instead of the plan's own.
         title: text above the plan.
+
+    Returns:
+        How the plan lies on the axes, for marks to be added.
     """
     shown = shown or Shown()
     low, high = content_bounds(plan) if bounds is None else bounds
     notes = _notes(plan) if shown.footer else []
-    sheet, lines = _laid_out(axes, low, high, notes, shown.footer, bool(title))
+    sheet, lines = _laid_out(axes, low, high, notes, shown, bool(title))
     fills = room_colours(plan.rooms) if colours is None else colours
     labels, small = _room_labels(plan, sheet) if shown.labels else ([], [])
     if small and shown.footer:
-        sheet, lines = _laid_out(axes, low, high, [*small, *notes], True, bool(title))
+        sheet, lines = _laid_out(axes, low, high, [*small, *notes], shown, bool(title))
         labels, _ = _room_labels(plan, sheet)
     from panoplan.exporters.layers import add_layer
 
@@ -167,6 +173,7 @@ def draw_plan(
         layers.append(("title", [_title(title, sheet)]))
     for order, (name, marks) in enumerate(layers):
         add_layer(axes, name, marks, order)
+    return sheet
 
 
 def plan_figure(plan: FloorPlan, *, long_side_in: float = 10.0) -> Figure:
@@ -202,7 +209,7 @@ def scaled_figure(plan: FloorPlan, denominator: float) -> Figure:
         sheet = Sheet(low, high, points_per_unit, weight)
         small = _room_labels(plan, sheet)[1]
         lines = _wrapped([*small, *_notes(plan)], page[0] - 2 * _MARGIN_PT, weight)
-        page[1] = height + 2 * _MARGIN_PT + _footer_pt(lines, weight)
+        page[1] = height + 2 * _MARGIN_PT + _footer_pt(len(lines), weight)
     return _figure(plan, *(page / 72.0))
 
 
@@ -215,11 +222,11 @@ def _figure(plan: FloorPlan, width_in: float, height_in: float) -> Figure:
 
 
 def _weight(width_pt: float, height_pt: float) -> float:
-    return float(np.clip(max(width_pt, height_pt) / 720.0, 0.45, 1.3))
+    return float(np.clip(max(width_pt, height_pt) / 720.0, 0.55, 1.3))
 
 
 def _laid_out(
-    axes: Axes, low: FloatArray, high: FloatArray, notes: list[str], footer: bool, title: bool
+    axes: Axes, low: FloatArray, high: FloatArray, notes: list[str], shown: Shown, title: bool
 ) -> tuple[Sheet, list[str]]:
     """Sets the limits of the axes and says how the plan lies in them."""
     figure = axes.get_figure(root=True)
@@ -228,8 +235,11 @@ def _laid_out(
     width, height = box.width * 72.0 / figure.dpi, box.height * 72.0 / figure.dpi
     weight = _weight(width, height)
     margin = min(_MARGIN_PT, 0.06 * min(width, height))
-    lines = _wrapped(notes, width - 2 * margin, weight) if footer else []
-    below = _footer_pt(lines, weight) if footer else 0.0
+    most = _NOTE_LINES if shown.note_lines is None else shown.note_lines
+    lines = _wrapped(notes, width - 2 * margin, weight, most) if shown.footer else []
+    below = 0.0
+    if shown.footer or shown.note_lines is not None:
+        below = _footer_pt(shown.note_lines or len(lines), weight)
     above = 18.0 * weight if title else 0.0
     room = np.array([width - 2 * margin, max(height - 2 * margin - below - above, 1.0)])
     scale = float((room / np.maximum(high - low, 1e-9)).min())
@@ -244,16 +254,18 @@ def _laid_out(
     return Sheet(low, high, scale, weight), lines
 
 
-def _footer_pt(lines: Sequence[str], weight: float) -> float:
-    return (34.0 + 10.5 * len(lines)) * weight
+def _footer_pt(lines: int, weight: float) -> float:
+    return (34.0 + 10.5 * lines) * weight
 
 
-def _wrapped(notes: Sequence[str], width_pt: float, weight: float) -> list[str]:
+def _wrapped(
+    notes: Sequence[str], width_pt: float, weight: float, most: int = _NOTE_LINES
+) -> list[str]:
     """Notes broken into lines of the page, the last saying if there are more than fit."""
     characters = max(20, int(width_pt / (6.5 * weight * 0.56)))
     lines = [line for note in notes for line in wrap(note, characters)]
-    if len(lines) > _NOTE_LINES:
-        lines = [*lines[: _NOTE_LINES - 1], f"… and {len(lines) - _NOTE_LINES + 1} more lines"]
+    if len(lines) > most:
+        lines = [*lines[: most - 1], f"… and {len(lines) - most + 1} more lines"]
     return lines
 
 
@@ -291,7 +303,7 @@ def _room_labels(plan: FloorPlan, sheet: Sheet) -> tuple[list[RoomLabel], list[s
     return labels, ["  ·  ".join(small)] if small else []
 
 
-def _ring_path(area: Any) -> Any:
+def outline_path(area: Any) -> Any:
     """A matplotlib path of an area with its holes."""
     from matplotlib.path import Path
 
@@ -311,7 +323,7 @@ def _fills(plan: FloorPlan, colours: Mapping[str, str]) -> list[Artist]:
 
     return [
         PathPatch(
-            _ring_path(area),
+            outline_path(area),
             facecolor=colours.get(room.id, "#E6E8EB"),
             edgecolor="none",
             gid=f"fill_{room.id}",
@@ -325,7 +337,7 @@ def _outlines(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
 
     return [
         PathPatch(
-            _ring_path(area),
+            outline_path(area),
             facecolor="none",
             edgecolor=WALL_COLOUR,
             linewidth=1.9 * sheet.weight,
@@ -410,7 +422,8 @@ def _corners(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
     ]
 
 
-def _text(x: float, y: float, text: str, size: float, colour: str, **place: Any) -> Text:
+def plan_text(x: float, y: float, text: str, size: float, colour: str, **place: Any) -> Text:
+    """Text that is never markup, at (x, y) in data units; `place` as matplotlib's Text has it."""
     from matplotlib.text import Text
 
     return Text(x, y, text, fontsize=size, color=colour, fontfamily=FONT, parse_math=False, **place)
@@ -418,7 +431,7 @@ def _text(x: float, y: float, text: str, size: float, colour: str, **place: Any)
 
 def _label(label: RoomLabel) -> Text:
     x, y = label.position
-    text = _text(
+    text = plan_text(
         x,
         y,
         "\n".join(label.lines),
@@ -438,7 +451,9 @@ def _label(label: RoomLabel) -> Text:
 def _title(title: str, sheet: Sheet) -> Text:
     x = (sheet.low[0] + sheet.high[0]) / 2
     y = sheet.high[1] + sheet.units(9.0 * sheet.weight)
-    return _text(x, y, printable(title), 11.0 * sheet.weight, WALL_COLOUR, ha="center", va="bottom")
+    return plan_text(
+        x, y, printable(title), 11.0 * sheet.weight, WALL_COLOUR, ha="center", va="bottom"
+    )
 
 
 def bar_length(extent: float) -> float:
@@ -459,7 +474,9 @@ def _footer(plan: FloorPlan, sheet: Sheet, lines: Sequence[str]) -> list[Artist]
     marks = _scale_bar(plan, sheet, left, bar, size)
     for k, line in enumerate(lines):
         y = bar - sheet.units((14.0 + 10.5 * k) * sheet.weight)
-        marks.append(_text(left, y, line, 6.5 * sheet.weight, QUIET_COLOUR, ha="left", va="top"))
+        marks.append(
+            plan_text(left, y, line, 6.5 * sheet.weight, QUIET_COLOUR, ha="left", va="top")
+        )
     return marks
 
 
@@ -484,9 +501,9 @@ def _scale_bar(plan: FloorPlan, sheet: Sheet, left: float, y: float, size: float
     told = f"{length:g} {unit}"
     start = left + length + sheet.units(6.0 * sheet.weight)
     middle = y + height / 2
-    marks.append(_text(start, middle, told, size, WALL_COLOUR, ha="left", va="center"))
+    marks.append(plan_text(start, middle, told, size, WALL_COLOUR, ha="left", va="center"))
     end = start + sheet.units(size * (width_em(told) + 2.0))
-    marks.append(_text(end, middle, _totals(plan), size, QUIET_COLOUR, ha="left", va="center"))
+    marks.append(plan_text(end, middle, _totals(plan), size, QUIET_COLOUR, ha="left", va="center"))
     return marks
 
 
