@@ -1,0 +1,138 @@
+import io
+import zipfile
+
+import numpy as np
+import pytest
+
+from panoplan.errors import InputError
+from panoplan.formats.layout_npz import read_layout_npz, write_layout_npz
+from panoplan.types.layout import Layout
+
+FLOOR = np.full(32, -0.5)
+
+
+def test_known_members_are_read_and_others_are_not(tmp_path):
+    path = tmp_path / "a.npz"
+    floor = FLOOR.copy()
+    floor[3], floor[4] = np.nan, 0.01
+    np.savez(
+        path,
+        floor_boundary=floor.astype(np.float32),
+        ceiling_boundary=np.full(32, 0.25),
+        corners=np.array([20, 4]),
+        floor_sigma=np.full(32, 0.125),
+        kind=np.array(["predicted"]),
+        secrets=np.array([{}], dtype=object),
+    )
+    layout = read_layout_npz(path)
+    np.testing.assert_array_equal(layout.floor_boundary, floor.astype(np.float32))
+    np.testing.assert_array_equal(layout.ceiling_boundary, np.full(32, 0.25))
+    np.testing.assert_array_equal(layout.corners, [4, 20])
+    np.testing.assert_array_equal(layout.floor_sigma, np.full(32, 0.125))
+
+
+def test_a_layout_without_corners_is_fine(tmp_path):
+    np.savez(tmp_path / "a.npz", floor_boundary=FLOOR)
+    layout = read_layout_npz(tmp_path / "a.npz")
+    assert layout.corners is None
+    assert layout.ceiling_boundary is None
+
+
+def test_read_of_write_and_same_bytes(tmp_path):
+    floor = np.linspace(-1.2, -0.1, 64)
+    floor[10] = np.nan
+    layout = Layout(floor, -floor, np.array([1.5, 40.0]), np.full(64, 0.01))
+    write_layout_npz(tmp_path / "a.npz", layout)
+    write_layout_npz(tmp_path / "b.npz", layout)
+    again = read_layout_npz(tmp_path / "a.npz")
+    for name in ("floor_boundary", "ceiling_boundary", "corners", "floor_sigma"):
+        np.testing.assert_allclose(getattr(again, name), getattr(layout, name), atol=1e-7)
+    assert (tmp_path / "a.npz").read_bytes() == (tmp_path / "b.npz").read_bytes()
+
+
+def saved(array, **options):
+    buffer = io.BytesIO()
+    np.save(buffer, array, **options)
+    return buffer.getvalue()
+
+
+def header_claiming(shape):
+    buffer = io.BytesIO()
+    np.lib.format.write_array_header_1_0(
+        buffer, {"descr": "<f8", "fortran_order": False, "shape": shape}
+    )
+    return buffer.getvalue() + b"\0" * 64
+
+
+@pytest.mark.parametrize(
+    ("members", "told"),
+    [
+        ({"corners": saved(np.zeros(2))}, "no floor_boundary"),
+        ({"floor_boundary": saved(np.array([{}] * 32), allow_pickle=True)}, "pickled objects"),
+        ({"floor_boundary": saved(np.array(["a"] * 32))}, "type <U1"),
+        ({"floor_boundary": saved(FLOOR.astype(complex))}, "type complex128"),
+        ({"floor_boundary": saved(FLOOR.reshape(2, 16))}, r"shape \(2, 16\)"),
+        ({"floor_boundary": saved(FLOOR[:8])}, "8 columns"),
+        ({"floor_boundary": saved(FLOOR * 100)}, "an elevation of -50"),
+        ({"floor_boundary": saved(np.full(32, -np.inf))}, "an elevation of -inf"),
+        ({"floor_boundary": saved(FLOOR), "floor_sigma": saved(FLOOR[:31])}, r"shape \(31,\)"),
+        ({"floor_boundary": saved(FLOOR), "corners": saved(np.array([33.0]))}, "outside"),
+        ({"floor_boundary": saved(FLOOR), "corners": saved(np.array([np.nan]))}, "NaN"),
+        ({"floor_boundary": saved(FLOOR)[:-40]}, "cut short"),
+        ({"floor_boundary": b"no array at all"}, "no array"),
+        ({"floor_boundary": header_claiming((10**13,))}, "cut short"),
+        ({"floor_boundary": header_claiming((10**30,))}, "cut short"),
+        ({"floor_boundary": b"\0" * (16 * 2**20 + 1)}, "16777217 bytes"),
+    ],
+)
+def test_bad_members(tmp_path, members, told):
+    path = tmp_path / "a.npz"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        for name, data in members.items():
+            archive.writestr(f"{name}.npy", data)
+    with pytest.raises(InputError, match=told) as caught:
+        read_layout_npz(path)
+    assert str(path) in str(caught.value)
+
+
+def test_a_member_that_declares_less_than_it_holds(tmp_path):
+    path = tmp_path / "a.npz"
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as archive:
+        archive.writestr("floor_boundary.npy", saved(FLOOR) + b"\0" * 10**6)
+    data = path.read_bytes()
+    size = len(saved(FLOOR)) + 10**6
+    path.write_bytes(data.replace(size.to_bytes(4, "little"), (200).to_bytes(4, "little")))
+    with pytest.raises(InputError):
+        read_layout_npz(path)
+
+
+@pytest.mark.parametrize(
+    ("data", "told"),
+    [(b"", "an empty file"), (b"not a zip", "no readable archive"), (None, "nothing")],
+)
+def test_bad_files(tmp_path, data, told):
+    path = tmp_path / "a.npz"
+    if data is not None:
+        path.write_bytes(data)
+    with pytest.raises(InputError, match=told):
+        read_layout_npz(path)
+
+
+@pytest.mark.parametrize("keep", [0.2, 0.5, 0.9])
+def test_a_truncated_file(tmp_path, keep):
+    path = tmp_path / "a.npz"
+    np.savez(path, floor_boundary=FLOOR)
+    data = path.read_bytes()
+    path.write_bytes(data[: int(keep * len(data))])
+    with pytest.raises(InputError, match="no readable archive"):
+        read_layout_npz(path)
+
+
+def test_a_corrupt_member(tmp_path):
+    path = tmp_path / "a.npz"
+    np.savez_compressed(path, floor_boundary=np.linspace(-1, -0.1, 1024))
+    data = bytearray(path.read_bytes())
+    data[200:260] = b"\xff" * 60
+    path.write_bytes(bytes(data))
+    with pytest.raises(InputError, match="no readable archive"):
+        read_layout_npz(path)
