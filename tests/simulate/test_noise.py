@@ -200,7 +200,7 @@ def test_corners_are_found_with_the_measured_recall_and_precision(model):
     recall = [share for _, share in MEASURED.corner_recall]
     precision = [share for _, share in MEASURED.corner_precision]
     np.testing.assert_allclose(hits / found, recall, atol=0.02)
-    np.testing.assert_allclose(hits / told, precision, atol=0.035)
+    np.testing.assert_allclose(hits / told, precision, atol=0.02)
 
 
 def test_noisy_boundaries_stay_below_the_horizon_and_finite():

@@ -45,6 +45,19 @@ def test_heading_drifts_too_and_bends_the_way():
     assert 0.2 < np.rad2deg(np.median(errors)) < 2.5
 
 
+def test_each_step_goes_the_way_the_heading_errs():
+    across, slipped = [], []
+    for seed, true in ways(40):
+        found = drifted(true, 0.4, 1.0, np.random.default_rng(seed))
+        turn = heading_errors(true, found)[:-1]
+        step = np.diff(true.translations, axis=0)
+        off = np.diff(found.translations, axis=0) - step
+        across.append(np.stack([turn * step[:, 2], -turn * step[:, 0]], axis=1).ravel())
+        slipped.append(off[:, [0, 2]].ravel())
+    x, y = np.concatenate(across), np.concatenate(slipped)
+    assert x @ y / (x @ x) == pytest.approx(1.0, abs=0.35)
+
+
 def test_no_drift_is_the_truth():
     _, true = next(ways(1))
     assert drifted(true, 0.0, 0.0, np.random.default_rng(0)) is true

@@ -8,8 +8,7 @@ from typing import Any
 
 from panoplan.cli import settings
 from panoplan.cli.progress import progress
-from panoplan.datasets.folder import open_folder
-from panoplan.errors import InputError
+from panoplan.datasets.detect import open_scene
 from panoplan.formats.run_folder import RunFolder
 from panoplan.pipeline import RunOptions, run, summary
 
@@ -24,7 +23,7 @@ def add_parser(commands: Any) -> None:
         description="Turns a folder of camera poses and room layouts into a floor plan.",
         epilog="example: panoplan run walk/ -o plan/ --camera-height 1.5",
     )
-    parser.add_argument("input", type=Path, help="sequence folder")
+    parser.add_argument("input", type=Path, help="sequence folder or MP3D-FPE folder")
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
     parser.add_argument("--trajectory", type=Path, help="TUM file instead of the folder's")
     parser.add_argument("--layouts", type=Path, help="folder instead of the folder's")
@@ -39,9 +38,7 @@ def add_parser(commands: Any) -> None:
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     config = settings.resolve(options)
-    if not options.input.is_dir():
-        raise InputError(options.input, "no folder", "a sequence folder")
-    scene = open_folder(options.input, trajectory=options.trajectory, layouts=options.layouts)
+    scene = open_scene(options.input, trajectory=options.trajectory, layouts=options.layouts)
     folder = RunFolder(options.output, force=options.force)
     told = RunOptions(options.trajectory_unit, options.camera_height)
     with progress("keyframes", quiet=options.quiet) as report:

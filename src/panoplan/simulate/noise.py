@@ -387,10 +387,10 @@ def noisy_corners(
         off = np.interp(rng.random(len(kept)), shares, limits) * width / _REFERENCE_WIDTH
         kept = kept + off * rng.choice([-1.0, 1.0], len(kept))
     hits = model.corner_recall * len(corners)
-    made_up = rng.uniform(0, width, rng.poisson(hits * (1 / model.corner_precision - 1)))
-    if len(corners):
-        gap = np.abs((made_up[:, None] - corners + width / 2) % width - width / 2).min(axis=1)
-        made_up = made_up[gap > 20 * width / _REFERENCE_WIDTH]
+    made_up = rng.uniform(0, width, (rng.poisson(hits * (1 / model.corner_precision - 1)), 20))
+    gap = np.abs((made_up[..., None] - corners + width / 2) % width - width / 2)
+    away = gap.min(axis=2, initial=width) > 20 * width / _REFERENCE_WIDTH
+    made_up = made_up[np.arange(len(made_up)), np.argmax(away, axis=1)]
     return np.sort(np.concatenate([kept, made_up]) % width)
 
 
