@@ -66,9 +66,9 @@ def test_hand_computed_figures_of_a_shifted_room():
     assert report.corners.true_to_predicted.median_cm == pytest.approx(25.0)
     assert dict(report.corners.true_to_predicted.within)[10.0] == 0.5
     assert dict(report.corners.within)[25.0].hits == 4
-    # Two sides shifted by 0.5 m, and on the other two a quarter of the length is not shared,
-    # on average 0.25 m away.
-    assert report.rooms.pairs[1].outline_cm == pytest.approx(100 * (2 * 0.5 + 0.25 * 0.25 * 2) / 4)
+    # Along the 8 m of one outline: 2 m are 0.5 m off; of the side inside the other square 1 m is
+    # 0.5 m off and 1 m is 0.25 m on average; two pieces of 0.5 m are 0.25 m off on average.
+    assert report.rooms.pairs[1].outline_cm == pytest.approx(100 * (1 + 0.5 + 0.25 + 0.25) / 8)
 
 
 @given(st.floats(-np.pi, np.pi), st.tuples(st.floats(-30, 30), st.floats(-30, 30)))

@@ -128,6 +128,7 @@ def draw_plan(
     colours: Mapping[str, str] | None = None,
     bounds: tuple[FloatArray, FloatArray] | None = None,
     title: str = "",
+    points_per_unit: float | None = None,
 ) -> Sheet:
     """Draws a plan seen from above: first axis to the right, second up, both at one scale.
 
@@ -141,6 +142,8 @@ def draw_plan(
         colours: fill by room id, instead of those of `room_colours`.
         bounds: least and greatest coordinates to be shown, instead of the plan's own.
         title: text above the plan.
+        points_per_unit: printer's points a plan unit, where the sheet is large enough for it;
+            None for as large as fits.
 
     Returns:
         How the plan lies on the axes, for marks to be added.
@@ -148,11 +151,13 @@ def draw_plan(
     shown = shown or Shown()
     low, high = content_bounds(plan) if bounds is None else bounds
     notes = _notes(plan) if shown.footer else []
-    sheet, lines = _laid_out(axes, low, high, notes, shown, bool(title))
+    sheet, lines = _laid_out(axes, low, high, notes, shown, bool(title), points_per_unit)
     fills = room_colours(plan.rooms) if colours is None else colours
     labels, small = _room_labels(plan, sheet) if shown.labels else ([], [])
     if small and shown.footer:
-        sheet, lines = _laid_out(axes, low, high, [*small, *notes], shown, bool(title))
+        sheet, lines = _laid_out(
+            axes, low, high, [*small, *notes], shown, bool(title), points_per_unit
+        )
         labels, _ = _room_labels(plan, sheet)
     from panoplan.exporters.layers import add_layer
 
@@ -168,7 +173,10 @@ def draw_plan(
     if shown.labels:
         layers.append(("labels", [_label(label) for label in labels]))
     if shown.footer:
-        layers.append(("scale", _footer(plan, sheet, lines)))
+        told = _totals(plan)
+        if points_per_unit is not None and plan.unit == "m":
+            told += f"   1:{72.0 / 0.0254 / points_per_unit:.0f}"
+        layers.append(("scale", _footer(plan, sheet, told, lines)))
     if title:
         layers.append(("title", [_title(title, sheet)]))
     for order, (name, marks) in enumerate(layers):
@@ -210,14 +218,16 @@ def scaled_figure(plan: FloorPlan, denominator: float) -> Figure:
         small = _room_labels(plan, sheet)[1]
         lines = _wrapped([*small, *_notes(plan)], page[0] - 2 * _MARGIN_PT, weight)
         page[1] = height + 2 * _MARGIN_PT + _footer_pt(len(lines), weight)
-    return _figure(plan, *(page / 72.0))
+    return _figure(plan, float(page[0]) / 72.0, float(page[1]) / 72.0, points_per_unit)
 
 
-def _figure(plan: FloorPlan, width_in: float, height_in: float) -> Figure:
+def _figure(
+    plan: FloorPlan, width_in: float, height_in: float, points_per_unit: float | None = None
+) -> Figure:
     from matplotlib.figure import Figure
 
     figure = Figure(figsize=(width_in, height_in), facecolor="white")
-    draw_plan(figure.add_axes((0.0, 0.0, 1.0, 1.0)), plan)
+    draw_plan(figure.add_axes((0.0, 0.0, 1.0, 1.0)), plan, points_per_unit=points_per_unit)
     return figure
 
 
@@ -226,7 +236,13 @@ def _weight(width_pt: float, height_pt: float) -> float:
 
 
 def _laid_out(
-    axes: Axes, low: FloatArray, high: FloatArray, notes: list[str], shown: Shown, title: bool
+    axes: Axes,
+    low: FloatArray,
+    high: FloatArray,
+    notes: list[str],
+    shown: Shown,
+    title: bool,
+    points_per_unit: float | None = None,
 ) -> tuple[Sheet, list[str]]:
     """Sets the limits of the axes and says how the plan lies in them."""
     figure = axes.get_figure(root=True)
@@ -242,7 +258,7 @@ def _laid_out(
         below = _footer_pt(shown.note_lines or len(lines), weight)
     above = 18.0 * weight if title else 0.0
     room = np.array([width - 2 * margin, max(height - 2 * margin - below - above, 1.0)])
-    scale = float((room / np.maximum(high - low, 1e-9)).min())
+    scale = points_per_unit or float((room / np.maximum(high - low, 1e-9)).min())
     centre = (low + high) / 2
     bottom = (high - low)[1] * scale
     spare = (room[1] - bottom) / 2
@@ -463,15 +479,14 @@ def bar_length(extent: float) -> float:
     return float(max(step * power for step in (1, 2, 5) if step * power <= goal))
 
 
-def _footer(plan: FloorPlan, sheet: Sheet, lines: Sequence[str]) -> list[Artist]:
-    size = 7.5 * sheet.weight
+def _footer(plan: FloorPlan, sheet: Sheet, totals: str, lines: Sequence[str]) -> list[Artist]:
     left = float(sheet.low[0])
     centre = (sheet.low[0] + sheet.high[0]) / 2
     least = sheet.units(220.0 * sheet.weight)
     if sheet.high[0] - sheet.low[0] < least:
         left = float(centre - least / 2)
     bar = float(sheet.low[1]) - sheet.units(20.0 * sheet.weight)
-    marks = _scale_bar(plan, sheet, left, bar, size)
+    marks = _scale_bar(plan, sheet, (left, bar), totals)
     for k, line in enumerate(lines):
         y = bar - sheet.units((14.0 + 10.5 * k) * sheet.weight)
         marks.append(
@@ -480,10 +495,13 @@ def _footer(plan: FloorPlan, sheet: Sheet, lines: Sequence[str]) -> list[Artist]
     return marks
 
 
-def _scale_bar(plan: FloorPlan, sheet: Sheet, left: float, y: float, size: float) -> list[Artist]:
+def _scale_bar(
+    plan: FloorPlan, sheet: Sheet, place: tuple[float, float], totals: str
+) -> list[Artist]:
     """A bar of two fields, its length beside it, and the totals."""
     from matplotlib.patches import Rectangle
 
+    (left, y), size = place, 7.5 * sheet.weight
     length = bar_length(float((sheet.high - sheet.low).max()))
     height = sheet.units(4.0 * sheet.weight)
     marks: list[Artist] = [
@@ -503,7 +521,7 @@ def _scale_bar(plan: FloorPlan, sheet: Sheet, left: float, y: float, size: float
     middle = y + height / 2
     marks.append(plan_text(start, middle, told, size, WALL_COLOUR, ha="left", va="center"))
     end = start + sheet.units(size * (width_em(told) + 2.0))
-    marks.append(plan_text(end, middle, _totals(plan), size, QUIET_COLOUR, ha="left", va="center"))
+    marks.append(plan_text(end, middle, totals, size, QUIET_COLOUR, ha="left", va="center"))
     return marks
 
 

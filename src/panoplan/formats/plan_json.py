@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import functools
 import json
-import math
 import re
+import sys
 from collections.abc import Iterable
 from importlib import resources
 from pathlib import Path
@@ -28,6 +28,7 @@ _AXES = (
     "plan [x, y] = [X, Z] of the trajectory's level world times the scale; polygons run "
     "counter-clockwise in it; heading in rad from +y towards +x"
 )
+_LARGEST = sys.float_info.max
 _NUMBER_LIST = re.compile(r"\[\n\s+((?:-?[0-9.eE+-]+,?\s+)+)\]")
 
 
@@ -214,7 +215,7 @@ def _sorted(value: Any) -> Any:
 def _not_finite(value: Any, where: str) -> str | None:
     """JSON path of the first number that is not finite, or None."""
     items: Iterable[tuple[str, Any]] = ()
-    if isinstance(value, float) and not math.isfinite(value):
+    if isinstance(value, int | float) and not -_LARGEST <= value <= _LARGEST:
         return where
     if isinstance(value, dict):
         items = ((f"{where}.{key}", item) for key, item in value.items())
