@@ -13,6 +13,9 @@ from panoplan.geometry.segments import splat_segments
 from panoplan.types.arrays import BoolArray, FloatArray
 from panoplan.types.room import WallPiece
 
+# A wall between two rows of candidates is up to half a cell off both: it must still count.
+_LEAST_CELLS = 0.8
+
 
 @dataclass(frozen=True, eq=False)
 class Grid:
@@ -126,7 +129,7 @@ def wall_density(grid: Grid, walls: Sequence[WallPiece], config: ShapeConfig) ->
     ends = np.array([grid.to_grid(wall.ends) for wall in walls])
     distance = np.array([wall.distance for wall in walls])
     sigma = config.wall_sigma_ch * np.maximum(1.0, (distance / config.wall_near_ch) ** 2)
-    splat_segments(total, ends, np.maximum(sigma / grid.cell, 0.5), config.wall_sigma_ch / sigma)
+    splat_segments(total, ends, np.maximum(sigma / grid.cell, _LEAST_CELLS), config.wall_sigma_ch / sigma)
     reach = 2 * int(np.ceil(config.wall_merge_ch / grid.cell)) + 1
     nearby = ndimage.maximum_filter(total, size=reach)
     floor = config.wall_floor

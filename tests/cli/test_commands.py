@@ -1,0 +1,133 @@
+import json
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+from tests.scenes import RECTANGLE, walk
+
+from panoplan.cli.main import main
+from panoplan.formats.plan_json import read_plan
+from panoplan.formats.sequence import write_sequence
+from panoplan.types.layout import Layout
+
+EXAMPLE = Path(__file__).parents[2] / "examples" / "flat"
+OUTPUTS = {"plan.json", "plan.svg", "plan.png", "log.jsonl", "settings.toml"}
+
+
+@pytest.fixture(scope="module")
+def ran(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("run") / "plan"
+    assert main(["run", str(EXAMPLE), "-o", str(folder), "--quiet"]) == 0
+    return folder
+
+
+@pytest.fixture
+def room(tmp_path):
+    cameras = np.random.default_rng(0).uniform([-1.4, -0.9], [1.4, 0.9], (6, 2))
+    write_sequence(tmp_path / "room", "room", walk(RECTANGLE, cameras))
+    return tmp_path / "room"
+
+
+def test_run_writes_its_files_and_nothing_else(ran):
+    assert {path.name for path in ran.iterdir()} == OUTPUTS
+
+
+def test_the_example_is_found_room_by_room(ran, capsys):
+    assert main(["eval", str(ran / "plan.json"), str(EXAMPLE), "--json"]) == 0
+    report = json.loads(capsys.readouterr().out)
+    text = json.dumps(report)
+    assert "NaN" not in text
+    plan = read_plan(ran / "plan.json")
+    assert plan.unit == "m"
+    assert len([r for r in plan.rooms if r.polygon is not None]) == 6
+
+
+def test_truth_is_never_read(ran, tmp_path):
+    bare = tmp_path / "bare"
+    shutil.copytree(EXAMPLE, bare, ignore=shutil.ignore_patterns("*_gt*"))
+    assert main(["run", str(bare), "-o", str(tmp_path / "plan"), "--quiet"]) == 0
+    assert (tmp_path / "plan/plan.json").read_bytes() == (ran / "plan.json").read_bytes()
+
+
+def test_compare_draws(ran, tmp_path, capsys):
+    picture = tmp_path / "figure.png"
+    assert main(["compare", str(ran / "plan.json"), str(EXAMPLE), "-o", str(picture)]) == 0
+    assert picture.read_bytes().startswith(b"\x89PNG")
+
+
+def test_simulate_makes_what_run_reads(tmp_path, capsys):
+    flat = tmp_path / "flat"
+    assert main(["simulate", "-o", str(flat), "--seed", "3", "--rooms", "5", "--stills"]) == 0
+    assert main(["run", str(flat), "-o", str(tmp_path / "plan"), "--quiet"]) == 0
+
+
+def test_version_and_help(capsys):
+    for words in (["--version"], ["--help"], ["run", "--help"], ["eval", "--help"]):
+        with pytest.raises(SystemExit) as stop:
+            main(words)
+        assert stop.value.code == 0
+    assert "example: panoplan run" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (["run", "nowhere", "-o", "x"], "nowhere: found nothing"),
+        (["run", "{room}", "-o", "{out}", "--set", "rooms.treshold=1"], "rooms.threshold"),
+        (["run", "{room}", "-o", "{out}", "--set", "rooms.threshold=2"], "0.0 to 1.0"),
+        (["run", "{room}", "-o", "{out}", "--set", "rooms.threshold=much"], "float"),
+        (["run", "{room}", "-o", "{out}", "--config", "none.toml"], "none.toml: found nothing"),
+        (["run", "{room}", "-o", "{room}"], "other files"),
+        (["eval", "{room}/sequence.json", "{room}"], "a plan of schema 1"),
+    ],
+)
+def test_bad_usage_is_one_line_and_exit_2(words, message, room, tmp_path, capsys):
+    words = [word.format(room=room, out=tmp_path / "out") for word in words]
+    before = sorted(path.name for path in room.iterdir())
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert message in error
+    assert error.count("\n") == 1
+    assert sorted(path.name for path in room.iterdir()) == before
+
+
+def test_no_room_is_exit_3_with_reasons(room, tmp_path):
+    for path in (room / "layouts_pred").iterdir():
+        from panoplan.formats.layout_npz import write_layout_npz
+
+        write_layout_npz(path, Layout(np.full(1024, 0.1)))
+    assert main(["run", str(room), "-o", str(tmp_path / "plan"), "--quiet"]) == 3
+    plan = read_plan(tmp_path / "plan/plan.json")
+    assert plan.rooms == ()
+    assert {s.reason for s in plan.skipped} == {"no column of the layout is below the horizon"}
+
+
+def test_one_keyframe(tmp_path):
+    write_sequence(tmp_path / "one", "one", walk(RECTANGLE, [[0.2, 0.1]]))
+    assert main(["run", str(tmp_path / "one"), "-o", str(tmp_path / "plan"), "--quiet"]) == 0
+    plan = read_plan(tmp_path / "plan/plan.json")
+    assert (plan.unit, plan.scale.ch_per_su, len(plan.rooms)) == ("ch", None, 1)
+
+
+def test_an_interrupted_run_goes_on_and_ends_the_same(ran, tmp_path, monkeypatch, capsys):
+    from panoplan.estimator.front import FloorPlanEstimator
+
+    update, count = FloorPlanEstimator.update, 0
+
+    def interrupted(self, keyframe):
+        nonlocal count
+        count += 1
+        if count == 60:
+            raise KeyboardInterrupt
+        return update(self, keyframe)
+
+    words = ["run", str(EXAMPLE), "-o", str(tmp_path / "plan"), "--quiet"]
+    monkeypatch.setattr(FloorPlanEstimator, "update", interrupted)
+    assert main(words) == 130
+    assert "goes on with: panoplan run" in capsys.readouterr().err
+    assert main(words) == 0
+    assert count == 60 + 94 - 59
+    for name in ("plan.json", "log.jsonl", "plan.svg"):
+        assert (tmp_path / "plan" / name).read_bytes() == (ran / name).read_bytes()
+    assert {path.name for path in (tmp_path / "plan").iterdir()} == OUTPUTS
