@@ -4,6 +4,7 @@ import matplotlib.image
 import numpy as np
 import pytest
 from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.text import Text
 from tests.metrics.plans import CAMERAS, FLAT, LEFT, RIGHT, plan, square, truth, turned
 
 from panoplan.errors import InputError
@@ -82,3 +83,19 @@ def test_truth_as_a_plan():
     assert made.unit == "m"
     assert [room.name for room in made.rooms] == ["hall 0", "hall 1", "hall 2"]
     assert [camera.id for camera in made.trajectory] == ["kf0", "kf1", "kf2", "kf3", "kf4"]
+
+
+@pytest.mark.parametrize("stretch", [(1, 8), (8, 1), (1, 1)])
+def test_no_text_of_a_comparison_is_cropped(stretch):
+    rooms = tuple(p * stretch for p in FLAT)
+    figure = draw_comparison(plan((*rooms[:2], None)), truth(rooms), align="none")
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    for axes in figure.axes:
+        page = axes.get_window_extent()
+        for layer in layers(axes).values():
+            for mark in layer.marks:
+                if isinstance(mark, Text):
+                    box = mark.get_window_extent(canvas.get_renderer())
+                    assert page.x0 - 1 <= box.x0 <= box.x1 <= page.x1 + 1
+                    assert page.y0 - 1 <= box.y0 <= box.y1 <= page.y1 + 1

@@ -15,11 +15,13 @@ from panoplan.exporters.drawing import (
     Shown,
     content_bounds,
     draw_plan,
+    footer_left,
     outline_path,
     plan_text,
     room_area,
     room_colours,
 )
+from panoplan.exporters.labels import width_em
 from panoplan.exporters.layers import add_layer
 from panoplan.exporters.pictures import write_picture
 from panoplan.metrics.alignment import Freedom, transformed
@@ -220,34 +222,38 @@ def _dots(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
 
 
 def _legend(axes: Axes, sheet: Sheet) -> None:
-    """Says what the colours of the overlay mean, on one line below the plan."""
+    """Says what the colours of the overlay mean, on two lines below the plan."""
+    fills = (("in both", BOTH_COLOUR), ("missed", MISSED_COLOUR), ("too much", EXTRA_COLOUR))
+    lines = (("true outline", TRUE_COLOUR), ("predicted outline", PREDICTED_COLOUR))
+    marks: list[Artist] = []
+    for row, entries in enumerate((fills, lines)):
+        y = float(sheet.low[1]) - sheet.units((18.0 + 14.0 * row) * sheet.weight)
+        marks += _legend_row(sheet, y, entries, filled=row == 0)
+    add_layer(axes, "legend", marks, 14)
+
+
+def _legend_row(
+    sheet: Sheet, y: float, entries: tuple[tuple[str, str], ...], *, filled: bool
+) -> list[Artist]:
     from matplotlib.patches import Rectangle
 
     size = 8.0 * sheet.weight
-    x, y = float(sheet.low[0]), float(sheet.low[1]) - sheet.units(18.0 * sheet.weight)
+    side, x = sheet.units(size), footer_left(sheet)
     marks: list[Artist] = []
-    named = (
-        ("in both", BOTH_COLOUR, "none"),
-        ("missed", MISSED_COLOUR, "none"),
-        ("too much", EXTRA_COLOUR, "none"),
-        ("true", "white", TRUE_COLOUR),
-        ("predicted", "white", PREDICTED_COLOUR),
-    )
-    for name, colour, edge in named:
-        side = sheet.units(size)
+    for name, colour in entries:
         marks.append(
             Rectangle(
                 (x, y - side / 2),
                 side,
                 side,
-                facecolor=colour,
-                edgecolor=edge,
+                facecolor=colour if filled else "white",
+                edgecolor="none" if filled else colour,
                 linewidth=1.3 * sheet.weight,
             )
         )
         marks.append(plan_text(x + 1.4 * side, y, name, size, WALL_COLOUR, ha="left", va="center"))
-        x += side * (1.4 + 0.6 * len(name) + 1.4)
-    add_layer(axes, "legend", marks, 14)
+        x += side * (2.8 + width_em(name))
+    return marks
 
 
 def _caption(figure: Figure, report: Report) -> None:

@@ -472,6 +472,13 @@ def _title(title: str, sheet: Sheet) -> Text:
     )
 
 
+def footer_left(sheet: Sheet) -> float:
+    """Where a footer begins: below the plan's left edge, or further left below a narrow plan."""
+    least = sheet.units(220.0 * sheet.weight)
+    centre = float(sheet.low[0] + sheet.high[0]) / 2
+    return min(float(sheet.low[0]), centre - least / 2)
+
+
 def bar_length(extent: float) -> float:
     """A round length (1, 2 or 5 times a power of ten) of a tenth to a quarter of an extent."""
     goal = extent / 4
@@ -480,11 +487,7 @@ def bar_length(extent: float) -> float:
 
 
 def _footer(plan: FloorPlan, sheet: Sheet, totals: str, lines: Sequence[str]) -> list[Artist]:
-    left = float(sheet.low[0])
-    centre = (sheet.low[0] + sheet.high[0]) / 2
-    least = sheet.units(220.0 * sheet.weight)
-    if sheet.high[0] - sheet.low[0] < least:
-        left = float(centre - least / 2)
+    left = footer_left(sheet)
     bar = float(sheet.low[1]) - sheet.units(20.0 * sheet.weight)
     marks = _scale_bar(plan, sheet, (left, bar), totals)
     for k, line in enumerate(lines):
