@@ -41,10 +41,15 @@ def test_a_ring_that_crosses_itself_has_the_area_it_encloses():
 
 
 def test_matching_takes_more_hits_over_a_better_one():
-    # Taking the best pair (0, 0) would leave the second true room without a partner.
-    overlap = np.array([[0.9, 0.5], [0.6, 0.0]])
-    assert [(m.true, m.predicted) for m in matching(overlap, 0.5)] == [(0, 1), (1, 0)]
-    assert [(m.true, m.predicted) for m in matching(overlap, 0.7)] == [(0, 0)]
+    # The best pair (0, 0) has more IoU than the two others together, but is one hit only.
+    overlap = np.array([[0.9, 0.4], [0.4, 0.0]])
+    assert [(m.true, m.predicted) for m in matching(overlap, 0.3)] == [(0, 1), (1, 0)]
+    assert [(m.true, m.predicted) for m in matching(overlap, 0.5)] == [(0, 0)]
+
+
+def test_among_equal_hits_the_larger_overlap_is_taken():
+    overlap = np.array([[0.5, 0.9], [0.6, 0.5]])
+    assert [(m.true, m.predicted) for m in matching(overlap, 0.3)] == [(0, 1), (1, 0)]
 
 
 def test_a_prediction_stands_for_one_room_only():
@@ -82,6 +87,13 @@ def test_unvisited_rooms_count_neither_for_nor_against():
     for threshold in (0.3, 0.7):
         score = room_score(overlap, threshold, visited)
         assert (score.hits, score.true, score.predicted) == (1, 1, 2)
+
+
+def test_a_prediction_of_both_kinds_of_room_belongs_to_the_better_one():
+    visited = np.array([True, False])
+    assert of_unvisited(np.array([[0.5], [0.4]]), visited) == ()
+    assert of_unvisited(np.array([[0.4], [0.5]]), visited) == (0,)
+    assert of_unvisited(np.array([[0.1], [0.2]]), visited) == ()
 
 
 def test_visited_is_where_a_camera_stands():
