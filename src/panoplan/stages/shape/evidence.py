@@ -129,7 +129,9 @@ def wall_density(grid: Grid, walls: Sequence[WallPiece], config: ShapeConfig) ->
     ends = np.array([grid.to_grid(wall.ends) for wall in walls])
     distance = np.array([wall.distance for wall in walls])
     sigma = config.wall_sigma_ch * np.maximum(1.0, (distance / config.wall_near_ch) ** 2)
-    splat_segments(total, ends, np.maximum(sigma / grid.cell, _LEAST_CELLS), config.wall_sigma_ch / sigma)
+    splat_segments(
+        total, ends, np.maximum(sigma / grid.cell, _LEAST_CELLS), config.wall_sigma_ch / sigma
+    )
     reach = 2 * int(np.ceil(config.wall_merge_ch / grid.cell)) + 1
     nearby = ndimage.maximum_filter(total, size=reach)
     floor = config.wall_floor
