@@ -6,6 +6,7 @@ import pytest
 
 from panoplan.errors import InputError
 from panoplan.formats.layout_npz import read_layout_npz, write_layout_npz
+from panoplan.formats.npy import parse_npy
 from panoplan.types.layout import Layout
 
 FLOOR = np.full(32, -0.5)
@@ -136,3 +137,41 @@ def test_a_corrupt_member(tmp_path):
     path.write_bytes(bytes(data))
     with pytest.raises(InputError, match="no readable archive"):
         read_layout_npz(path)
+
+
+@pytest.mark.parametrize(
+    "array",
+    [
+        np.arange(-6, 6, dtype=">f4").reshape(3, 4) / 8,
+        np.asfortranarray(np.arange(12.0).reshape(3, 4)),
+        np.arange(12, dtype=np.uint8).reshape(3, 4),
+        np.float64(2.5),
+        np.zeros((0, 4)),
+        np.arange(5, dtype=np.float16),
+    ],
+)
+@pytest.mark.parametrize("version", [(1, 0), (2, 0), (3, 0)])
+def test_arrays_are_read_as_numpy_reads_them(array, version):
+    buffer = io.BytesIO()
+    np.lib.format.write_array(buffer, np.asanyarray(array), version=version)
+    again = parse_npy(buffer.getvalue(), "a")
+    assert again.dtype == np.float64
+    np.testing.assert_array_equal(again, array)
+
+
+@pytest.mark.parametrize(
+    "header",
+    [
+        "{'descr': '<f4', 'fortran_order': False, 'shape'4), }",
+        "{'descr': '<f4',ortran_order': False, 'shape': (3,), }",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (3, -1), }",
+        "{'descr': '<f9', 'fortran_order': False, 'shape': (3,), }",
+        "{'descr': [('a', '<f4')], 'fortran_order': False, 'shape': (3,), }",
+        "{'descr': '<f4', 'fortran_order': False, 'shape': (3 3), }",
+        "__import__('os').abort()",
+    ],
+)
+def test_broken_headers(header):
+    data = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode() + b"\0" * 64
+    with pytest.raises(InputError, match=r"^a: found"):
+        parse_npy(data, "a")

@@ -14,6 +14,7 @@ from panoplan.types.arrays import FloatArray
 from panoplan.types.pose import Trajectory
 
 _LIMIT = 256 * 2**20
+_LARGEST = 1e100
 
 
 def read_rows(path: Path) -> tuple[tuple[str, ...], FloatArray]:
@@ -26,7 +27,8 @@ def read_rows(path: Path) -> tuple[tuple[str, ...], FloatArray]:
         N labels, and (N, 7) tx ty tz qx qy qz qw as written, NaN included.
 
     Raises:
-        InputError: missing, empty, a row without eight fields, or a field that is no number.
+        InputError: missing, empty, a row without eight fields, a field that is no number
+            or beyond 1e100.
     """
     labels, rows = [], []
     for number, line in enumerate(read_text(path, _LIMIT).splitlines(), start=1):
@@ -41,6 +43,8 @@ def read_rows(path: Path) -> tuple[tuple[str, ...], FloatArray]:
             rows.append([float(field) for field in fields[1:]])
         except ValueError:
             raise InputError(f"{path}:{number}", repr(line[:60]), "seven numbers") from None
+        if any(_LARGEST < abs(value) < np.inf for value in rows[-1]):
+            raise InputError(f"{path}:{number}", repr(line[:60]), f"at most {_LARGEST:g}")
         labels.append(fields[0])
     if not rows:
         raise InputError(path, "no pose", "at least one row")
