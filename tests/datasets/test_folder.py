@@ -2,7 +2,7 @@ import json
 
 import numpy as np
 import pytest
-from tests.conftest import METRES_PER_UNIT
+from tests.conftest import METRES_PER_UNIT, known_to_a_run
 
 from panoplan.datasets.folder import open_folder, read_truth
 from panoplan.errors import InputError
@@ -37,10 +37,7 @@ def without_truth(source, target):
     """A copy of a folder with all that is truth taken away."""
     target.mkdir()
     data = json.loads((source / "sequence.json").read_text())
-    known = {k: data[k] for k in ("name", "layout_size", "camera_height") if k in data}
-    known["keyframes"] = [
-        {k: item[k] for k in ("id", "image", "order") if k in item} for item in data["keyframes"]
-    ]
+    known = known_to_a_run(data)
     assert known != data
     (target / "sequence.json").write_text(json.dumps(known))
     for path in source.rglob("*"):
@@ -69,10 +66,13 @@ def test_truth_makes_no_difference(flat, tmp_path):
     assert_same(open_folder(flat), open_folder(bare))
 
 
-def test_truth_of_the_real_home_makes_no_difference(shared_data, zind_scene_folder, tmp_path):
-    bare = without_truth(zind_scene_folder, tmp_path / "bare")
-    whole = open_folder(shared_data / "zind_000", trajectory=zind_scene_folder / "trajectory.tum")
-    assert_same(whole, open_folder(bare))
+def test_truth_of_the_real_home_makes_no_difference(shared_data, zind_scene_folder):
+    source = shared_data / "zind_000"
+    whole = open_folder(source, trajectory=zind_scene_folder / "trajectory.tum")
+    assert (source / "sequence.json").read_text() != (
+        zind_scene_folder / "sequence.json"
+    ).read_text()
+    assert_same(whole, open_folder(zind_scene_folder))
 
 
 def test_the_real_home(shared_data, zind_scene_folder):
@@ -172,6 +172,20 @@ def test_nothing_disappears(flat):
     assert told["pano_10"].startswith("unreadable layout: found no readable archive")
     assert told["roof"] == "no layout for this pose"
     assert scene.skipped == (("attic", "no pose"), ("cellar", "layout of no keyframe"))
+
+
+def test_a_pose_without_panorama_gets_a_name_of_its_own(flat):
+    data = json.loads((flat / "sequence.json").read_text())
+    data["keyframes"][0]["id"] = "7"
+    (flat / "sequence.json").write_text(json.dumps(data))
+    (flat / "layouts_pred" / "pano_4.npz").rename(flat / "layouts_pred" / "7.npz")
+    (flat / "trajectory.tum").write_text(
+        "0 0 0 0 0 0 0 1\n1 1 0 0 0 0 0 1\n2 1 0 2 0 0 0 1\n5 1 0 3 0 0 0 1\n"
+    )
+    assert ids(open_folder(flat)) == ["7", "pano_9", "pano_10", "5"]
+    text = (flat / "trajectory.tum").read_text().replace("5 1", "7 1")
+    (flat / "trajectory.tum").write_text(text)
+    assert ids(open_folder(flat)) == ["7", "pano_9", "pano_10", "pose_7"]
 
 
 def test_a_layout_named_after_its_image(flat):

@@ -46,6 +46,8 @@ def test_read_of_write(tmp_path):
         ("0 0 0 0 0 0 0 1 9\n", r":1: found 9 fields"),
         ("0 0 zero 0 0 0 0 1\n", r":1: .*seven numbers"),
         ("0 0 0 0 0 0 0 1\n1 0 0 0 1e200 0 0 1\n", r":2: .*at most 1e\+100"),
+        ("\x1b[2J 0 0 0 0 0 0 1\n", r":1: found the label '.x1b"),
+        ("a" * 201 + " 0 0 0 0 0 0 1\n", ":1: .*200 printable"),
         ("a 0 nan 0 0 0 0 1\n", "pose a: found NaN"),
         ("a 0 inf 0 0 0 0 1\n", "pose a: found NaN or infinity"),
         ("a 0 0 0 0 0 nan 1\n", "pose a: found NaN"),

@@ -36,6 +36,12 @@ def test_bad_folders(tmp_path):
         list_layouts(tmp_path)
 
 
+def test_a_name_that_cannot_be_printed(tmp_path):
+    np.savez(tmp_path / "a\n.npz", floor_boundary=np.full(64, -0.5))
+    with pytest.raises(InputError, match="printable names"):
+        list_layouts(tmp_path)
+
+
 def test_an_ending_that_is_not_known(tmp_path):
     with pytest.raises(InputError, match=r"'\.txt'; expected \.npz \| \.npy \| \.json"):
         read_layout(tmp_path / "a.txt")

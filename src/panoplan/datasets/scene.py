@@ -84,13 +84,15 @@ def build_scene(
     check_moving(trajectory, trajectory_source)
     association = associate(trajectory.labels, panoramas, trajectory_source)
     poses, turn = level(trajectory)
-    ids = {panorama.id for panorama in panoramas}
+    taken = {panorama.id for panorama in panoramas}
     keyframes = []
     for k in _walk_order(association.panoramas):
         panorama = association.panoramas[k]
         if panorama is None:
-            label = poses.labels[k]
-            own = label if label not in ids else f"pose_{label}"
+            own = poses.labels[k]
+            while own in taken:
+                own = f"pose_{own}"
+            taken.add(own)
             keyframes.append(Keyframe(own, poses[k], None, "no layout for this pose"))
             continue
         layout, problem = _read_layout(_layout_of(panorama, layouts), reader)

@@ -15,6 +15,7 @@ from panoplan.types.pose import Trajectory
 
 _LIMIT = 256 * 2**20
 _LARGEST = 1e100
+_LABEL_LIMIT = 200
 
 
 def read_rows(path: Path) -> tuple[tuple[str, ...], FloatArray]:
@@ -27,8 +28,8 @@ def read_rows(path: Path) -> tuple[tuple[str, ...], FloatArray]:
         N labels, and (N, 7) tx ty tz qx qy qz qw as written, NaN included.
 
     Raises:
-        InputError: missing, empty, a row without eight fields, a field that is no number
-            or beyond 1e100.
+        InputError: missing, empty, a row without eight fields, a label that cannot be
+            printed, or a field that is no number or beyond 1e100.
     """
     labels, rows = [], []
     for number, line in enumerate(read_text(path, _LIMIT).splitlines(), start=1):
@@ -39,6 +40,9 @@ def read_rows(path: Path) -> tuple[tuple[str, ...], FloatArray]:
             raise InputError(
                 f"{path}:{number}", f"{len(fields)} fields", "label tx ty tz qx qy qz qw"
             )
+        if not (fields[0].isprintable() and len(fields[0]) <= _LABEL_LIMIT):
+            found = f"the label {fields[0][:40]!r}"
+            raise InputError(f"{path}:{number}", found, f"{_LABEL_LIMIT} printable characters")
         try:
             rows.append([float(field) for field in fields[1:]])
         except ValueError:

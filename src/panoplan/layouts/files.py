@@ -28,14 +28,21 @@ def list_layouts(folder: Path) -> dict[str, Path]:
         File by name without ending, sorted by name.
 
     Raises:
-        InputError: no folder, no layout in it, or two layouts of one name.
+        InputError: no folder, no layout in it, two layouts of one name, or a name that cannot be
+            printed.
     """
     if not folder.is_dir():
         raise InputError(folder, "no folder", "a folder of layouts")
+    try:
+        paths = sorted(folder.iterdir())
+    except OSError as error:
+        raise InputError(folder, f"{error.strerror or error}", "a readable folder") from None
     files: dict[str, Path] = {}
-    for path in sorted(folder.iterdir()):
+    for path in paths:
         if path.suffix not in READERS or path.name.startswith(".") or path.is_dir():
             continue
+        if not path.stem.isprintable():
+            raise InputError(folder, f"a layout named {path.stem!r}", "printable names")
         if path.stem in files:
             found = f"two layouts of {path.stem} ({files[path.stem].name}, {path.name})"
             raise InputError(folder, found, "one layout a panorama")
