@@ -85,7 +85,9 @@ def read_mp3d_fpe(folder: Path) -> Mp3dFpe:
     ids = _keyframe_ids(odometry / _KEYFRAMES)
     _, rows = read_rows(odometry / _POSES)
     if len(rows) != len(ids):
-        raise InputError(odometry / _POSES, f"{len(rows)} poses", f"{len(ids)}, one a line of {_KEYFRAMES}")
+        raise InputError(
+            odometry / _POSES, f"{len(rows)} poses", f"{len(ids)}, one a line of {_KEYFRAMES}"
+        )
     trajectory, skipped = _valid_poses(ids, rows, odometry / _POSES)
     if trajectory is None:
         raise InputError(odometry / _POSES, "no valid pose", "at least one")
