@@ -12,7 +12,7 @@ from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.exporters.pictures import write_plan_pictures
 from panoplan.formats.run_folder import RunFolder
-from panoplan.types.plan import FloorPlan
+from panoplan.types.plan import FloorPlan, Skipped
 
 Progress = Callable[[int, int], None]
 
@@ -64,7 +64,9 @@ def run(
         folder.save(estimator.state, now=True)
         raise
     folder.record(len(scene.keyframes), estimator.finish())
-    plan = replace(estimator.plan(), level_rotation=scene.level_rotation)
+    plan = estimator.plan()
+    unread = tuple(Skipped(name, "keyframe", reason) for name, reason in scene.skipped)
+    plan = replace(plan, level_rotation=scene.level_rotation, skipped=(*unread, *plan.skipped))
     write_plan_pictures(folder.path, plan)
     folder.complete(plan)
     return plan

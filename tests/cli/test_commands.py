@@ -131,3 +131,13 @@ def test_an_interrupted_run_goes_on_and_ends_the_same(ran, tmp_path, monkeypatch
     for name in ("plan.json", "log.jsonl", "plan.svg"):
         assert (tmp_path / "plan" / name).read_bytes() == (ran / name).read_bytes()
     assert {path.name for path in (tmp_path / "plan").iterdir()} == OUTPUTS
+
+
+def test_an_mp3d_fpe_folder_runs_as_the_sequence_does(tmp_path, capsys):
+    scene = tmp_path / "scene"
+    words = ["--seed", "4", "--rooms", "5", "--step", "0.8", "--format", "mp3d-fpe"]
+    assert main(["simulate", "-o", str(scene / "0"), *words]) == 0
+    out = tmp_path / "plan"
+    assert main(["run", str(scene), "-o", str(out), "--camera-height", "1.5"]) == 0
+    assert "MP3D-FPE" in capsys.readouterr().out
+    assert len(read_plan(out / "plan.json").rooms) == 5

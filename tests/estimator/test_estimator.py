@@ -11,7 +11,13 @@ from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.formats.plan_json import plan_to_text
 from panoplan.formats.state import read_state, write_state
-from panoplan.types.events import KeyframeWaiting, RoomOpened, RoomShaped, ScaleFrozen
+from panoplan.types.events import (
+    KeyframeWaiting,
+    RoomOpened,
+    RoomShaped,
+    RoomsJoined,
+    ScaleFrozen,
+)
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.pose import Pose
 
@@ -197,3 +203,17 @@ def test_a_camera_that_stands_below_the_floor_is_left_out():
     layout = exact_layout(RECTANGLE, np.zeros(2), np.eye(3))
     plan = _plan([*keyframes, Keyframe("sunk", sunk, layout)])
     assert plan.skipped[-1].reason == "its pose lies below the floor"
+
+
+def test_a_view_of_parts_of_two_rooms_is_absorbed_at_the_end():
+    """A gross layout from the doorway, half in each room, is no third room."""
+    keyframes = _two_rooms()
+    half = np.array([[1.2, -1.4], [2.9, -1.4], [2.9, 2.6], [1.2, 2.6]])
+    (gross,) = walk(half, [[2.05, 0.0]])
+    estimator = FloorPlanEstimator(EARLY)
+    for keyframe in [*keyframes[:10], replace(gross, id="gross"), *keyframes[10:]]:
+        estimator.update(keyframe)
+    assert len(estimator.state.rooms) == 3
+    joined = [e for e in estimator.finish() if isinstance(e, RoomsJoined)]
+    assert len(joined) == 1
+    assert len(estimator.plan().rooms) == 2

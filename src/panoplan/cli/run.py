@@ -27,6 +27,7 @@ def add_parser(commands: Any) -> None:
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
     parser.add_argument("--trajectory", type=Path, help="TUM file instead of the folder's")
     parser.add_argument("--layouts", type=Path, help="folder instead of the folder's")
+    parser.add_argument("--version", help="of an MP3D-FPE scene that has several")
     parser.add_argument("--trajectory-unit", choices=["m", "unknown"], default="unknown")
     parser.add_argument("--camera-height", type=_metres, metavar="M", help="metres above the floor")
     parser.add_argument("--force", action="store_true", help="write into a folder of other files")
@@ -38,7 +39,12 @@ def add_parser(commands: Any) -> None:
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     config = settings.resolve(options)
-    scene = open_scene(options.input, trajectory=options.trajectory, layouts=options.layouts)
+    scene = open_scene(
+        options.input,
+        trajectory=options.trajectory,
+        layouts=options.layouts,
+        version=options.version,
+    )
     folder = RunFolder(options.output, force=options.force)
     told = RunOptions(options.trajectory_unit, options.camera_height)
     with progress("keyframes", quiet=options.quiet) as report:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -53,7 +54,8 @@ def act(options: argparse.Namespace) -> int:
             options.output, scene.name, scene.keyframes, scene.truth, scene.camera_height_m
         )
     else:
-        write_mp3d_fpe(options.output, scene.keyframes, scene.truth)
+        numbered = [replace(k, id=str(n + 1)) for n, k in enumerate(scene.keyframes)]
+        write_mp3d_fpe(options.output, numbered, scene.truth)
     print(
         f"{len(scene.truth.plan.rooms)} rooms, {len(scene.keyframes)} keyframes: {options.output}"
     )

@@ -86,6 +86,8 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
     if state.scale is None and state.waiting:
         state, told = _freeze(state, _estimate(state, config), config)
         events += told
+    state, joined = _absorb(state, config)
+    events += joined
     for index in range(len(state.rooms)):
         state, told = _shape(state, index, config)
         events += told
@@ -224,32 +226,65 @@ def _join(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
         if not same:
             break
         kept_at, gone_at = sorted((state.current, same[0]))
-        kept, gone = state.rooms[kept_at], state.rooms[gone_at]
-        orientations = kept.orientations
-        for wall in gone.walls:
-            orientations = orientation.observe(orientations, wall, config.orientation)
-        joined = replace(
-            kept,
-            density=rooms.add(kept.density, gone.density, config.rooms),
-            walls=(*kept.walls, *gone.walls),
-            orientations=orientations,
-            stale=True,
-            away=0,
-        )
-        events.append(RoomsJoined(room_id(kept.number), room_id(gone.number)))
-        remaining = list(state.rooms)
-        remaining[kept_at] = joined
-        del remaining[gone_at]
-        state = replace(
-            state,
-            rooms=tuple(remaining),
-            current=kept_at,
-            cameras=tuple(
-                replace(camera, room=kept.number) if camera.room == gone.number else camera
-                for camera in state.cameras
-            ),
-        )
+        state, joined = _merged(state, kept_at, gone_at, config)
+        events.append(joined)
     return state, tuple(events)
+
+
+def _absorb(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
+    """Gives small rooms that prove to be parts of others to the one they overlap most."""
+    events: list[Event] = []
+    index = 0
+    while index < len(state.rooms):
+        room = state.rooms[index]
+        others = [other for other in state.rooms if other is not room]
+        few = sum(camera.room == room.number for camera in state.cameras)
+        if (
+            index == state.current
+            or few > config.rooms.absorb_keyframes
+            or rooms.claimed(room.density, [o.density for o in others], config.rooms)
+            <= config.rooms.absorb_share
+        ):
+            index += 1
+            continue
+        overlaps = [rooms.overlap(room.density, o.density, config.rooms) for o in others]
+        into = state.rooms.index(others[int(np.argmax(overlaps))])
+        kept_at, gone_at = sorted((index, into))
+        state, joined = _merged(state, kept_at, gone_at, config)
+        events.append(joined)
+        index = 0
+    return state, tuple(events)
+
+
+def _merged(state: State, kept_at: int, gone_at: int, config: Config) -> tuple[State, Event]:
+    kept, gone = state.rooms[kept_at], state.rooms[gone_at]
+    orientations = kept.orientations
+    for wall in gone.walls:
+        orientations = orientation.observe(orientations, wall, config.orientation)
+    joined = replace(
+        kept,
+        density=rooms.add(kept.density, gone.density, config.rooms),
+        walls=(*kept.walls, *gone.walls),
+        orientations=orientations,
+        stale=True,
+        away=kept.away if gone.away < 0 else 0,
+    )
+    remaining = list(state.rooms)
+    remaining[kept_at] = joined
+    del remaining[gone_at]
+    current = state.current
+    if current is not None:
+        current = kept_at if current == gone_at else current - (current > gone_at)
+    merged = replace(
+        state,
+        rooms=tuple(remaining),
+        current=current,
+        cameras=tuple(
+            replace(camera, room=kept.number) if camera.room == gone.number else camera
+            for camera in state.cameras
+        ),
+    )
+    return merged, RoomsJoined(room_id(kept.number), room_id(gone.number))
 
 
 def _leave(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:

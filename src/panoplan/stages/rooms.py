@@ -164,6 +164,21 @@ def overlap(one: RoomDensity, other: RoomDensity, config: RoomsConfig) -> float:
     return common / max(1, smaller)
 
 
+def claimed(room: RoomDensity, others: Sequence[RoomDensity], config: RoomsConfig) -> float:
+    """Share of a room's mask that lies in the masks of other rooms, 0-1."""
+    own = mask(room, config)
+    taken = np.zeros_like(own)
+    for other in others:
+        low = np.maximum(room.first_cell, other.first_cell)
+        high = np.minimum(
+            np.add(room.first_cell, own.shape), np.add(other.first_cell, other.free.shape)
+        )
+        if np.all(high > low):
+            part = _crop(taken, room, low, high)
+            part |= _crop(mask(other, config), other, low, high)
+    return int(np.count_nonzero(own & taken)) / max(1, int(np.count_nonzero(own)))
+
+
 def _crop(cells: BoolArray, room: RoomDensity, low: FloatArray, high: FloatArray) -> BoolArray:
     i, j = np.subtract(low, room.first_cell)
     k, m = np.subtract(high, room.first_cell)
