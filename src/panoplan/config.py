@@ -505,13 +505,38 @@ class Config:
         _check(self, "")
 
 
-_CHANGES: dict[str, dict[str, Any]] = {"default": {}, "sound": {}}
+_PAPER: dict[str, Any] = {
+    "registration": {"height_from_pose": False},
+    "scale": {
+        "warmup": 0.2,
+        "window_stride": 1,
+        "step_unit": "absolute",
+        "sub_step": False,
+        "facings": 1,
+        "control": False,
+        "smooth": False,
+        "max_range_ch": 100.0,
+        "columns": 16384,
+    },
+    "rooms": {
+        "normalise": "running_max",
+        "membership": "camera",
+        "merge_overlap": 1.0,
+        "absorb_keyframes": 0,
+        "leave_after": 1,
+    },
+    "planes": {"resplit": False, "max_range_ch": 100.0},
+    "orientation": {"full_length_ch": 0.0},
+    "shape": {"mask_margin_ch": 0.0, "wall_merge_ch": 10.0, "wall_floor": 1e-6},
+}
+
+_CHANGES: dict[str, dict[str, Any]] = {"default": {}, "sound": {}, "paper": _PAPER}
 
 PRESETS = tuple(_CHANGES)
 
 
 def preset(name: str) -> Config:
-    """The settings of a preset: "paper", "released", "sound" or "default".
+    """The settings of a preset: "paper", "sound" or "default".
 
     Raises:
         ConfigError: no such preset.
