@@ -220,8 +220,7 @@ def _join(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
             i
             for i, other in enumerate(state.rooms)
             if i != state.current
-            and rooms.overlap(current.density, other.density, config.rooms)
-            > config.rooms.merge_overlap
+            and rooms.overlap(current.density, other.density) > config.rooms.merge_overlap
         ]
         if not same:
             break
@@ -242,12 +241,11 @@ def _absorb(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
         if (
             index == state.current
             or few > config.rooms.absorb_keyframes
-            or rooms.claimed(room.density, [o.density for o in others], config.rooms)
-            <= config.rooms.absorb_share
+            or rooms.claimed(room.density, [o.density for o in others]) <= config.rooms.absorb_share
         ):
             index += 1
             continue
-        overlaps = [rooms.overlap(room.density, o.density, config.rooms) for o in others]
+        overlaps = [rooms.overlap(room.density, o.density) for o in others]
         into = state.rooms.index(others[int(np.argmax(overlaps))])
         kept_at, gone_at = sorted((index, into))
         state, joined = _merged(state, kept_at, gone_at, config)

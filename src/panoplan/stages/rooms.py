@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from panoplan.config import RoomsConfig
 from panoplan.geometry.polar import range_profile, star_evidence
@@ -64,7 +65,8 @@ def clipped_patch(view: RegisteredLayout, config: RoomsConfig) -> Patch:
     weight = np.float32(np.clip(near / _CLOSE_TO_WALL_CH, _MIN_WEIGHT, 1.0))
     if config.normalise != "coverage":
         weight = np.float32(1.0)
-    return Patch(view.camera, RoomDensity(first, free * weight, against * weight), int(free.sum()))
+    evidence = _masked(first, free * weight, against * weight, config)
+    return Patch(view.camera, evidence, int(free.sum()))
 
 
 # A camera in a doorway or at a wall gives a layout several times worse (docs/deviations.md).
@@ -91,7 +93,7 @@ def add(room: RoomDensity, patch: RoomDensity, config: RoomsConfig) -> RoomDensi
     _add_at(against, patch.against, patch.first_cell, first)
     if config.normalise == "running_max":
         free /= max(float(free.max()), np.finfo(np.float32).tiny)
-    return RoomDensity(first, free, against)
+    return _masked(first, free, against, config)
 
 
 def density(room: RoomDensity, config: RoomsConfig) -> FloatArray:
@@ -105,16 +107,17 @@ def density(room: RoomDensity, config: RoomsConfig) -> FloatArray:
         (n, m) density: the share of the evidence that speaks for the cell, or counts over their
         maximum.
     """
+    return _density(room.free, room.against, config)
+
+
+def _density(
+    free: NDArray[np.float32], against: NDArray[np.float32], config: RoomsConfig
+) -> FloatArray:
     if config.normalise == "coverage":
-        total = room.free + room.against
-        share = np.divide(room.free, total, out=np.zeros_like(total), where=total > 0)
+        total = free + against
+        share = np.divide(free, total, out=np.zeros_like(total), where=total > 0)
         return np.asarray(share, dtype=np.float64)
-    return room.free.astype(float) / max(float(room.free.max(initial=0.0)), 1e-12)
-
-
-def mask(room: RoomDensity, config: RoomsConfig) -> BoolArray:
-    """Cells that belong to the room: density at or above the threshold."""
-    return (density(room, config) >= config.threshold) & (room.free > 0)
+    return free.astype(float) / max(float(free.max(initial=0.0)), 1e-12)
 
 
 def choose(
@@ -138,7 +141,7 @@ def choose(
         scores = [_camera_density(patch.camera, room, config) for room in rooms]
         stay = enter = config.threshold
     else:
-        scores = [overlap(patch.density, room, config) for room in rooms]
+        scores = [overlap(patch.density, room) for room in rooms]
         stay, enter = config.overlap_stay, config.overlap_min
     if current is not None and scores[current] >= stay:
         better = max(scores) if config.membership == "overlap" else scores[current]
@@ -150,39 +153,57 @@ def choose(
     return None, tuple(scores)
 
 
-def overlap(one: RoomDensity, other: RoomDensity, config: RoomsConfig) -> float:
+def overlap(one: RoomDensity, other: RoomDensity) -> float:
     """Common cells of two masks over the smaller mask's, 0-1."""
-    low = np.maximum(one.first_cell, other.first_cell)
-    high = np.minimum(
-        np.add(one.first_cell, one.free.shape), np.add(other.first_cell, other.free.shape)
-    )
-    if np.any(high <= low):
+    box = _common_box(one, other)
+    if box is None:
         return 0.0
-    a, b = mask(one, config), mask(other, config)
-    common = int(np.count_nonzero(_crop(a, one, low, high) & _crop(b, other, low, high)))
-    smaller = min(int(np.count_nonzero(a)), int(np.count_nonzero(b)))
-    return common / max(1, smaller)
+    common = int(np.count_nonzero(_crop(one, box) & _crop(other, box)))
+    return common / min(one.mask_cells, other.mask_cells)
 
 
-def claimed(room: RoomDensity, others: Sequence[RoomDensity], config: RoomsConfig) -> float:
+def claimed(room: RoomDensity, others: Sequence[RoomDensity]) -> float:
     """Share of a room's mask that lies in the masks of other rooms, 0-1."""
-    own = mask(room, config)
-    taken = np.zeros_like(own)
+    left = room.mask.copy()
     for other in others:
-        low = np.maximum(room.first_cell, other.first_cell)
-        high = np.minimum(
-            np.add(room.first_cell, own.shape), np.add(other.first_cell, other.free.shape)
-        )
-        if np.all(high > low):
-            part = _crop(taken, room, low, high)
-            part |= _crop(mask(other, config), other, low, high)
-    return int(np.count_nonzero(own & taken)) / max(1, int(np.count_nonzero(own)))
+        box = _common_box(room, other)
+        if box is not None:
+            part = _cropped(left, room, box)
+            part &= ~_crop(other, box)
+    return 1.0 - int(np.count_nonzero(left)) / max(1, room.mask_cells)
 
 
-def _crop(cells: BoolArray, room: RoomDensity, low: FloatArray, high: FloatArray) -> BoolArray:
-    i, j = np.subtract(low, room.first_cell)
-    k, m = np.subtract(high, room.first_cell)
-    return cells[i:k, j:m]
+def _masked(
+    first: tuple[int, int],
+    free: NDArray[np.float32],
+    against: NDArray[np.float32],
+    config: RoomsConfig,
+) -> RoomDensity:
+    """The evidence with its mask: the cells whose density reaches the threshold."""
+    mask: BoolArray = (_density(free, against, config) >= config.threshold) & (free > 0)
+    rows, columns = np.flatnonzero(mask.any(axis=1)), np.flatnonzero(mask.any(axis=0))
+    box = (0, 0, 0, 0)
+    if len(rows):
+        i, j = first
+        box = (
+            i + int(rows[0]), j + int(columns[0]), i + int(rows[-1]) + 1, j + int(columns[-1]) + 1,
+        )  # fmt: skip
+    return RoomDensity(first, free, against, mask, box, int(np.count_nonzero(mask)))
+
+
+def _common_box(one: RoomDensity, other: RoomDensity) -> tuple[int, int, int, int] | None:
+    a, b = one.mask_box, other.mask_box
+    box = (max(a[0], b[0]), max(a[1], b[1]), min(a[2], b[2]), min(a[3], b[3]))
+    return box if box[0] < box[2] and box[1] < box[3] else None
+
+
+def _crop(room: RoomDensity, box: tuple[int, int, int, int]) -> BoolArray:
+    return _cropped(room.mask, room, box)
+
+
+def _cropped(cells: BoolArray, room: RoomDensity, box: tuple[int, int, int, int]) -> BoolArray:
+    i, j = room.first_cell
+    return cells[box[0] - i : box[2] - i, box[1] - j : box[3] - j]
 
 
 def _camera_density(camera: FloatArray, room: RoomDensity, config: RoomsConfig) -> float:

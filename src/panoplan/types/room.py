@@ -8,7 +8,7 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from panoplan.types.arrays import FloatArray
+from panoplan.types.arrays import BoolArray, FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,11 +21,18 @@ class RoomDensity:
         first_cell: lattice index of the arrays' first cell.
         free: (n, m) sum of the views that hold the cell, as the normalisation wants it.
         against: (n, m) sum of the weights that speak against it.
+        mask: (n, m) the cells that belong to the room.
+        mask_box: lattice index of the mask's first row and column, and of those after its last;
+            all 0 where the mask is empty.
+        mask_cells: number of cells in the mask.
     """
 
     first_cell: tuple[int, int]
     free: NDArray[np.float32]
     against: NDArray[np.float32]
+    mask: BoolArray
+    mask_box: tuple[int, int, int, int]
+    mask_cells: int
 
 
 @dataclass(frozen=True, eq=False)
