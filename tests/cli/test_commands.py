@@ -141,3 +141,15 @@ def test_an_mp3d_fpe_folder_runs_as_the_sequence_does(tmp_path, capsys):
     assert main(["run", str(scene), "-o", str(out), "--camera-height", "1.5"]) == 0
     assert "MP3D-FPE" in capsys.readouterr().out
     assert len(read_plan(out / "plan.json").rooms) == 5
+
+
+def test_bench_accuracy_writes_figures_with_their_settings(tmp_path, capsys):
+    out = tmp_path / "accuracy.json"
+    words = ["bench", "accuracy", "--flats", "1", "--quiet", "-o", str(out), "--seed", "5"]
+    assert main(words) == 0
+    result = json.loads(out.read_text())
+    assert result["settings"]["seed"] == 5
+    for grade in ("mild", "hard"):
+        (scene,) = result["figures"][grade]["scenes"]
+        assert result["figures"][grade]["summary"]["rooms"] == scene["rooms"] > 0
+    assert result["figures"]["mild"]["summary"]["lost"] == 0

@@ -1,0 +1,56 @@
+"""A benchmark's result: figures with what they were measured with."""
+
+from __future__ import annotations
+
+import os
+import platform
+import subprocess
+from pathlib import Path
+from typing import Any
+
+from panoplan import __version__
+from panoplan.config import Config, as_dict
+
+
+def record(name: str, config: Config, figures: Any) -> dict[str, Any]:
+    """The figures with version, commit, machine and settings.
+
+    Args:
+        name: of the benchmark.
+        config: settings it ran with.
+        figures: plain values.
+    """
+    return {
+        "benchmark": name,
+        "version": __version__,
+        "commit": _commit(),
+        "machine": {
+            "processor": _processor(),
+            "cores": os.cpu_count(),
+            "python": platform.python_version(),
+            "system": platform.system(),
+        },
+        "figures": figures,
+        "settings": as_dict(config),
+    }
+
+
+def _commit() -> str | None:
+    here = Path(__file__).parent
+    try:
+        done = subprocess.run(
+            ["git", "-C", str(here), "describe", "--always", "--dirty", "--abbrev=12"],
+            capture_output=True, text=True, check=True, timeout=10,
+        )  # fmt: skip
+    except (OSError, subprocess.SubprocessError):
+        return None
+    return done.stdout.strip() or None
+
+
+def _processor() -> str:
+    info = Path("/proc/cpuinfo")
+    if info.exists():
+        for line in info.read_text(encoding="utf-8", errors="replace").splitlines():
+            if line.startswith("model name"):
+                return line.partition(":")[2].strip()
+    return platform.processor() or platform.machine()
