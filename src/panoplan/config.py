@@ -454,6 +454,22 @@ class ShapeConfig:
         high=1.0,
         paper=0.0,
     )
+    core_depth_ch: float = _setting(
+        0.2,
+        "Deeper inside, the mask is core, which no edge should cut off; a corridor of 0.8 m still "
+        "has one.",
+        unit="camera heights",
+        low=0.0,
+        high=10.0,
+    )
+    core_factor: float = _setting(
+        10.0,
+        "How many times more L_mask counts in the core; otherwise cutting off a long thin arm is "
+        "cheaper than going around it.",
+        low=0.0,
+        high=1000.0,
+        paper=0.0,
+    )
     weight_orientation: float = _setting(
         0.6,
         "Cost of a radian between an edge and the nearest wall direction (lambda_ori).",
@@ -527,7 +543,7 @@ _PAPER: dict[str, Any] = {
     },
     "planes": {"resplit": False, "max_range_ch": 100.0},
     "orientation": {"full_length_ch": 0.0},
-    "shape": {"mask_margin_ch": 0.0, "wall_merge_ch": 10.0, "wall_floor": 1e-6},
+    "shape": {"core_factor": 0.0, "mask_margin_ch": 0.0, "wall_merge_ch": 10.0, "wall_floor": 1e-6},
 }
 
 _CHANGES: dict[str, dict[str, Any]] = {"default": {}, "sound": {}, "paper": _PAPER}

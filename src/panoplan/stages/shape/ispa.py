@@ -90,7 +90,9 @@ def _shortest(
 ) -> FloatArray | None:
     limit = limited and config.limit_edges
     depth = ndimage.distance_transform_edt(mask) * grid.cell
-    inside = (depth > config.mask_margin_ch + 0.5 * grid.cell).astype(float)
+    depth -= 0.5 * grid.cell
+    inside = (depth > config.mask_margin_ch).astype(float)
+    inside[depth > config.core_depth_ch] += config.core_factor
     turned = np.array([o.direction for o in orientations]) - np.arctan2(
         grid.axes[0, 1], grid.axes[0, 0]
     )
