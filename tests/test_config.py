@@ -56,5 +56,5 @@ def test_unknown_and_unfitting_settings_are_refused(changes, message):
 
 
 def test_an_unknown_preset_is_refused_with_the_known_ones():
-    with pytest.raises(ConfigError, match="default or paper or sound"):
+    with pytest.raises(ConfigError, match="default or paper or released or sound"):
         preset("best")

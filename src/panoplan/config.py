@@ -136,6 +136,21 @@ class ScaleConfig:
         low=1e-3,
         high=1.0,
     )
+    saturation: float = _setting(
+        0.0,
+        "Where above zero, the histogram is not normalised: a cell counts as min(count, "
+        "saturation) / saturation, as in the public code; 0 is the normalised histogram.",
+        unit="points",
+        low=0.0,
+        high=1e6,
+        paper=0.0,
+    )
+    combine: Literal["optimum", "mean"] = _setting(
+        "optimum",
+        "The best candidate of the last level for all windows together, or the mean over levels "
+        "and windows of the best of each, as in the public code.",
+        paper="optimum",
+    )
     facings: int = _setting(
         4,
         "Directions into which wall points are sorted by the side the wall is seen from, so that "
@@ -183,6 +198,14 @@ class RoomsConfig:
         unit="camera heights",
         low=0.2,
         high=100.0,
+    )
+    clip_quartiles: float = _setting(
+        0.0,
+        "Where above zero, only points farther than so many lower quartiles of the ranges are "
+        "clipped, as in the public code; 0 clips all beyond the radius.",
+        low=0.0,
+        high=1000.0,
+        paper=0.0,
     )
     cell_ch: float = _setting(
         0.05,
@@ -251,11 +274,15 @@ class RoomsConfig:
     )
     merge_overlap: float = _setting(
         0.6,
-        "Two rooms whose masks overlap by more than this share of the smaller one are joined; "
-        "1 joins none.",
+        "Two rooms whose masks overlap by more than this share are joined; 1 joins none.",
         low=0.0,
         high=1.0,
         paper=1.0,
+    )
+    merge_over: Literal["smaller", "union"] = _setting(
+        "smaller",
+        "What the overlap of two rooms is a share of; the public code takes the union, which "
+        "never joins a part with its whole.",
     )
     leave_after: int = _setting(
         2,
@@ -305,6 +332,15 @@ class PlanesConfig:
         low=0.5,
         high=100.0,
         paper="unlimited",
+    )
+    merge_corners_columns: float = _setting(
+        0.0,
+        "Corners nearer than so many columns (of 1024; in proportion otherwise) are merged into "
+        "their mean, as in the public code.",
+        unit="columns",
+        low=0.0,
+        high=500.0,
+        paper=0.0,
     )
     resplit: bool = _setting(
         True,
@@ -396,6 +432,24 @@ class ShapeConfig:
         unit="cells",
         low=2.0,
         high=1000.0,
+    )
+    edge_length: Literal["euclidean", "manhattan"] = _setting(
+        "euclidean",
+        "How the length of an edge is measured against that limit; the public code adds |dx| and "
+        "|dy|.",
+    )
+    max_edge_angle_deg: float = _setting(
+        90.0,
+        "Largest angle between an edge and the nearest wall direction; 90 allows all, and walls "
+        "whose direction was not found.",
+        unit="deg",
+        low=0.0,
+        high=90.0,
+        paper=90.0,
+    )
+    cost_unit: Literal["camera_height", "cell"] = _setting(
+        "camera_height",
+        "The length that L_plane and L_mask are costs of: per cell they change from grid to grid.",
     )
     band_in_cells: float = _setting(
         2.0,
@@ -546,13 +600,79 @@ _PAPER: dict[str, Any] = {
     "shape": {"core_factor": 0.0, "mask_margin_ch": 0.0, "wall_merge_ch": 10.0, "wall_floor": 1e-6},
 }
 
-_CHANGES: dict[str, dict[str, Any]] = {"default": {}, "sound": {}, "paper": _PAPER}
+# The public code's settings as observed (docs/deviations.md). Its thresholds are metres; here they
+# are camera heights of 1.5 m.
+_RELEASED: dict[str, Any] = {
+    "registration": {"height_from_pose": False},
+    "scale": {
+        "warmup": 1.0,
+        "window_stride": 1,
+        "steps": (0.5, 0.1, 0.01, 0.001),
+        "step_unit": "absolute",
+        "sub_step": False,
+        "saturation": 20.0,
+        "combine": "mean",
+        "facings": 1,
+        "control": False,
+        "smooth": False,
+        "max_range_ch": 100.0,
+        "columns": 16384,
+    },
+    "rooms": {
+        "clip_radius_ch": 4.0,
+        "clip_quartiles": 6.0,
+        "normalise": "running_max",
+        "membership": "camera",
+        "merge_overlap": 0.5,
+        "merge_over": "union",
+        "absorb_keyframes": 0,
+        "leave_after": 1,
+    },
+    "planes": {
+        "min_inlier_ratio": 0.8,
+        "merge_corners_columns": 50.0,
+        "min_columns": 50,
+        "resplit": False,
+        "max_range_ch": 100.0,
+    },
+    "orientation": {
+        "sigma0_deg": 30.0,
+        "sigma_per_ch_deg": 43.0,
+        "full_length_ch": 0.0,
+        "gate_deg": 30.0,
+        "final_sigma_deg": 3600.0,
+    },
+    "shape": {
+        "grids": (96, 128, 128),
+        "edge_length": "manhattan",
+        "max_edge_angle_deg": 15.0,
+        "cost_unit": "cell",
+        "band_in_cells": 0.0,
+        "band_out_cells": 4.0,
+        "refine_cells": 4.0,
+        "core_factor": 0.0,
+        "mask_margin_ch": 0.0,
+        "wall_merge_ch": 10.0,
+        "wall_floor": 1e-6,
+        "weight_orientation": 115.0,
+        "weight_plane": 10.0,
+        "weight_mask": 100.0,
+        "weight_complexity": 10.0,
+    },
+}
+
+_CHANGES: dict[str, dict[str, Any]] = {
+    "default": {},
+    "sound": {},
+    "paper": _PAPER,
+    "released": _RELEASED,
+}
 
 PRESETS = tuple(_CHANGES)
 
 
 def preset(name: str) -> Config:
-    """The settings of a preset: "paper", "sound" or "default".
+    """The settings of a preset: "paper", "released", "sound" or "default".
 
     Raises:
         ConfigError: no such preset.

@@ -4,7 +4,9 @@ import pytest
 from panoplan.geometry.density import registered_entropy
 
 
-def _entropy(offsets, positions, scales, *, sectors=None, n_sectors=1, smooth=False, cell=0.1):
+def _entropy(
+    offsets, positions, scales, *, sectors=None, n_sectors=1, smooth=False, cell=0.1, saturation=0.0
+):
     shape = offsets.shape[:2]
     return registered_entropy(
         offsets,
@@ -16,6 +18,7 @@ def _entropy(offsets, positions, scales, *, sectors=None, n_sectors=1, smooth=Fa
         cell,
         n_sectors,
         smooth,
+        saturation,
     )
 
 
@@ -28,6 +31,14 @@ def test_entropy_by_hand_does_not_depend_on_the_number_of_points():
     once = _entropy(points[None], np.zeros((1, 2)), [1.0])
     thrice = _entropy(np.repeat(points, 3, axis=0)[None], np.zeros((1, 2)), [1.0])
     np.testing.assert_allclose([once[0], thrice[0]], expected)
+
+
+def test_saturated_counts_by_hand():
+    """Cells of 4, 2, 1 and 1 points, saturated at 2, count as 1, 1, 1/2 and 1/2."""
+    at = np.repeat(np.arange(4) + 0.05, [4, 2, 1, 1])
+    points = np.stack([at, np.full(8, 0.05)], axis=1)
+    found = _entropy(points[None], np.zeros((1, 2)), [1.0], saturation=2.0)
+    assert found[0] == pytest.approx(2 * 0.5 * np.log(2))
 
 
 def test_height_scales_the_offsets():

@@ -3,7 +3,7 @@ from itertools import product
 import numpy as np
 import pytest
 
-from panoplan.geometry.graph import EdgeWeights, build_graph, shortest_cycle
+from panoplan.geometry.graph import EdgeLimits, EdgeWeights, build_graph, shortest_cycle
 
 
 def _ring(count, radii):
@@ -16,7 +16,7 @@ def _ring(count, radii):
 def _graph(nodes, order, turn, lap, off_wall, inside, complexity=0.1, orientation=0.0):
     return build_graph(
         nodes, order, lap, turn, off_wall, inside, np.array([0.0, np.pi / 2]),
-        EdgeWeights(orientation, 1.0, 5.0, complexity), lap, np.inf,
+        EdgeWeights(orientation, 1.0, 5.0, complexity), EdgeLimits(lap),
     )  # fmt: skip
 
 
@@ -65,7 +65,7 @@ def test_edge_cost_by_hand():
     inside = np.full((20, 20), 0.5)
     graph = build_graph(
         nodes, np.arange(3.0), 3.0, turn, off_wall, inside, np.array([np.deg2rad(30)]),
-        EdgeWeights(2.0, 1.0, 4.0, 0.7), 3.0, np.inf,
+        EdgeWeights(2.0, 1.0, 4.0, 0.7), EdgeLimits(3.0),
     )  # fmt: skip
     first = graph.costs[graph.starts[0]]
     assert graph.ends[graph.starts[0]] == 1
@@ -87,3 +87,25 @@ def test_no_cycle_where_the_lap_is_broken():
     half = order < 4
     graph = _graph(nodes[half], order[half], turn[half], 8.0, np.ones((40, 40)), np.zeros((40, 40)))
     assert shortest_cycle(graph) is None
+
+
+@pytest.mark.parametrize(
+    ("limits", "kept"),
+    [
+        (EdgeLimits(4.0, 12.0), 4),
+        (EdgeLimits(4.0, 11.0), 0),
+        (EdgeLimits(4.0, 15.9, manhattan=True), 0),
+        (EdgeLimits(4.0, 16.1, manhattan=True), 4),
+        (EdgeLimits(4.0, 12.0, angle=np.deg2rad(14)), 0),
+        (EdgeLimits(4.0, 12.0, angle=np.deg2rad(16)), 4),
+    ],
+)
+def test_only_edges_within_the_limits_are_built(limits, kept):
+    """A square on its corner, sides of 11.3 cells at 45°; the wall directions are 30° and 120°."""
+    nodes, order, turn = _ring(4, [8.0])
+    free = np.zeros((40, 40))
+    directions = np.deg2rad([30.0, 120.0])
+    graph = build_graph(
+        nodes, order, 4.0, turn, free, free, directions, EdgeWeights(1.0, 1.0, 1.0, 1.0), limits
+    )
+    assert len(graph.ends) == kept

@@ -6,7 +6,7 @@ from tests.scenes import L_SHAPE, RECTANGLE, walk
 
 from panoplan.config import PlanesConfig, RegistrationConfig
 from panoplan.geometry.angles import line_difference
-from panoplan.stages.planes import split, wall_pieces
+from panoplan.stages.planes import merged_corners, split, wall_pieces
 from panoplan.stages.registration import cast, register
 from panoplan.types.layout import Layout
 
@@ -91,6 +91,24 @@ def test_unknown_columns_split_a_wall():
     boundary = layout.floor_boundary.copy()
     boundary[500:524] = np.nan
     corners = _columns_of(RECTANGLE, np.zeros(2))
-    runs = split(_view(RECTANGLE, [0, 0], corners=corners, boundary=boundary))
+    runs = split(_view(RECTANGLE, [0, 0], corners=corners, boundary=boundary), CONFIG)
     assert len(runs) == 5
     assert sum(map(len, runs)) == 1000
+
+
+@pytest.mark.parametrize(
+    ("corners", "merged"),
+    [
+        ([100.0, 500.0], [100.0, 500.0]),
+        ([100.0, 130.0, 170.0, 600.0], [400.0 / 3, 600.0]),
+        ([10.0, 500.0, 1000.0], [500.0, 1017.0]),
+        ([5.0], [5.0]),
+    ],
+)
+def test_near_corners_are_merged_across_the_images_edge_too(corners, merged):
+    np.testing.assert_allclose(merged_corners(np.array(corners), 50.0, 1024), merged)
+
+
+def test_no_corner_is_merged_unless_asked():
+    corners = np.array([1.0, 1.5, 2.0])
+    np.testing.assert_array_equal(merged_corners(corners, 0.0, 1024), corners)

@@ -36,6 +36,25 @@ def test_patch_is_clipped_at_the_radius():
     assert area == pytest.approx(np.pi, rel=0.01)
 
 
+def test_the_public_codes_clip_spares_points_below_its_trigger():
+    """Ranges are 1.5 to 2.5; the lower quartile is about 1.56."""
+    (spared,) = _patches(RECTANGLE, [[0, 0]], replace(CONFIG, clip_radius_ch=1.0, clip_quartiles=6))
+    assert spared.density.mask.sum() * CONFIG.cell_ch**2 == pytest.approx(12.0, rel=0.01)
+    (moved,) = _patches(
+        RECTANGLE, [[0, 0]], replace(CONFIG, clip_radius_ch=1.8, clip_quartiles=1.2)
+    )
+    area = moved.density.mask.sum() * CONFIG.cell_ch**2
+    inside = np.hypot(*(np.indices((801, 601)) / 200 - np.array([2.0, 1.5])[:, None, None]))
+    assert area == pytest.approx(12.0 * np.mean(inside <= 1.8), rel=0.02)
+
+
+def test_overlap_over_the_union_is_that_of_a_part_in_its_whole():
+    whole, part = _patches(RECTANGLE, [[0, 0]]), _patches(RECTANGLE / 2, [[0, 0]])
+    one, other = whole[0].density, part[0].density
+    assert rooms.overlap(one, other) == pytest.approx(1.0)
+    assert rooms.overlap(one, other, "union") == pytest.approx(0.25, abs=0.01)
+
+
 def test_running_maximum_halves_old_evidence_each_time():
     """Algorithm 1: a cell unseen for two views is at a quarter."""
     (far,) = _patches(RECTANGLE + AWAY, [[10, 0]], PAPER)

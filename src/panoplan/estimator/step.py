@@ -144,6 +144,9 @@ def _freeze(
     state: State, estimate: ScaleEstimate, config: Config
 ) -> tuple[State, tuple[Event, ...]]:
     waiting = state.waiting
+    if estimate.method == "entropy" and estimate.ch_per_su is not None:
+        sigma = scale.scale_sigma(waiting, estimate.ch_per_su, config.scale)
+        estimate = replace(estimate, sigma=sigma)
     rises = [view.rise_su for view in waiting]
     median_height = 1.0 + (estimate.ch_per_su or 0.0) * float(np.median(rises))
     state = replace(state, scale=estimate, median_height=median_height, waiting=())
@@ -220,7 +223,8 @@ def _join(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
             i
             for i, other in enumerate(state.rooms)
             if i != state.current
-            and rooms.overlap(current.density, other.density) > config.rooms.merge_overlap
+            and rooms.overlap(current.density, other.density, config.rooms.merge_over)
+            > config.rooms.merge_overlap
         ]
         if not same:
             break

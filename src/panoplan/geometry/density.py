@@ -20,6 +20,7 @@ def registered_entropy(
     cell: float,
     n_sectors: int,
     smooth: bool,
+    saturation: float = 0.0,
 ) -> FloatArray:
     """Entropy of the normalised histogram of all points, for each scale.
 
@@ -36,19 +37,41 @@ def registered_entropy(
         cell: cell size in camera heights.
         n_sectors: number of facings.
         smooth: whether a point is shared among the four nearest cells.
+        saturation: where above zero, the histogram is not normalised: a cell counts as
+            min(count, saturation) / saturation.
 
     Returns:
         (S,) entropies in nats.
     """
     return np.asarray(
         _entropy(
-            offsets, sectors, sector_weights, positions, drops, scales, cell, n_sectors, smooth
+            offsets,
+            sectors,
+            sector_weights,
+            positions,
+            drops,
+            scales,
+            cell,
+            n_sectors,
+            smooth,
+            saturation,
         )
     )
 
 
 @njit(cache=True)
-def _entropy(offsets, sectors, sector_weights, positions, drops, scales, cell, n_sectors, smooth):
+def _entropy(
+    offsets,
+    sectors,
+    sector_weights,
+    positions,
+    drops,
+    scales,
+    cell,
+    n_sectors,
+    smooth,
+    saturation,
+):
     n_views, width = sectors.shape
     out = np.empty(scales.size)
     histogram = np.zeros(1)
@@ -113,6 +136,8 @@ def _entropy(offsets, sectors, sector_weights, positions, drops, scales, cell, n
         entropy = 0.0
         for t in range(n_touched):
             p = histogram[touched[t]] / total
+            if saturation > 0.0:
+                p = min(histogram[touched[t]], saturation) / saturation
             entropy -= p * np.log(p)
             histogram[touched[t]] = 0.0
         out[k] = entropy

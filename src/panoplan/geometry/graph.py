@@ -52,6 +52,23 @@ class EdgeWeights:
     complexity: float
 
 
+@dataclass(frozen=True)
+class EdgeLimits:
+    """Which edges are admissible.
+
+    Attributes:
+        advance: largest advance along the lap.
+        length: longest edge in cells.
+        manhattan: whether length is |Δx| + |Δy|.
+        angle: largest angle to the nearest wall direction, rad; π/2 allows all.
+    """
+
+    advance: float
+    length: float = np.inf
+    manhattan: bool = False
+    angle: float = np.pi / 2
+
+
 def build_graph(
     nodes: FloatArray,
     order: FloatArray,
@@ -61,14 +78,13 @@ def build_graph(
     inside: FloatArray,
     directions: FloatArray,
     weights: EdgeWeights,
-    max_advance: float,
-    max_length: float,
+    limits: EdgeLimits,
 ) -> CycleGraph:
     """All admissible edges with their costs, Eq. 8-11.
 
-    An edge is admissible if it advances along the lap by more than 0 and at most `max_advance`,
-    is no longer than `max_length`, and turns around the core by the difference of its ends'
-    `turn`: so every cycle of one lap winds around the core exactly once.
+    An edge is admissible if it advances along the lap, keeps within the limits, and turns around
+    the core by the difference of its ends' `turn`: so every cycle of one lap winds around the
+    core exactly once.
 
     Args:
         nodes: (N, 2) candidates in cells, sorted by `order`.
@@ -79,15 +95,15 @@ def build_graph(
         inside: (n, m) M_H, sampled at cell centres.
         directions: (K,) likely wall directions in rad; where empty, L_ori is 0.
         weights: λ of Eq. 11.
-        max_advance: largest advance along the lap.
-        max_length: longest edge in cells.
+        limits: which edges are admissible.
 
     Returns:
         The graph.
 
     Source: Eq. 8-11; L_ori is the angle between the wall's direction and the edge.
     """
-    count = _count_edges(nodes, order, lap, turn, max_advance, max_length)
+    bounds = (limits.advance, limits.length, limits.manhattan, limits.angle)
+    count = _count_edges(nodes, order, lap, turn, directions, bounds)
     starts = np.concatenate([[0], np.cumsum(count)])
     ends = np.empty(starts[-1], dtype=np.int64)
     costs = np.empty(starts[-1])
@@ -103,8 +119,7 @@ def build_graph(
         weights.plane,
         weights.mask,
         weights.complexity,
-        max_advance,
-        max_length,
+        bounds,
         starts,
         ends,
         costs,
@@ -155,7 +170,18 @@ def shortest_cycle(graph: CycleGraph) -> tuple[IntArray, float] | None:
 
 
 @njit(cache=True)
-def _admissible(i, j, nodes, order, lap, turn, max_advance, max_length):
+def _angle_to_nearest(dx, dy, directions):
+    angle = np.arctan2(dy, dx)
+    smallest = np.pi
+    for d in range(directions.size):
+        gap = abs((angle - directions[d] + 0.5 * np.pi) % np.pi - 0.5 * np.pi)
+        smallest = min(smallest, gap)
+    return smallest
+
+
+@njit(cache=True)
+def _admissible(i, j, nodes, order, lap, turn, directions, bounds):
+    max_advance, max_length, manhattan, max_angle = bounds
     advance = order[j] - order[i]
     rotation = turn[j] - turn[i]
     if j < i:
@@ -164,20 +190,27 @@ def _admissible(i, j, nodes, order, lap, turn, max_advance, max_length):
     if advance <= 0.0 or advance > max_advance or abs(rotation) >= _HALF_TURN:
         return False
     dx, dy = nodes[j, 0] - nodes[i, 0], nodes[j, 1] - nodes[i, 1]
-    return dx * dx + dy * dy <= max_length * max_length
+    if manhattan:
+        if abs(dx) + abs(dy) > max_length:
+            return False
+    elif dx * dx + dy * dy > max_length * max_length:
+        return False
+    if max_angle < 0.5 * np.pi and directions.size:
+        return _angle_to_nearest(dx, dy, directions) <= max_angle
+    return True
 
 
 @njit(cache=True)
-def _count_edges(nodes, order, lap, turn, max_advance, max_length):
+def _count_edges(nodes, order, lap, turn, directions, bounds):
     n = nodes.shape[0]
     count = np.zeros(n, dtype=np.int64)
     for i in range(n):
         for step in range(1, n):
             j = (i + step) % n
             advance = order[j] - order[i] + (lap if j < i else 0.0)
-            if advance > max_advance:
+            if advance > bounds[0]:
                 break
-            if _admissible(i, j, nodes, order, lap, turn, max_advance, max_length):
+            if _admissible(i, j, nodes, order, lap, turn, directions, bounds):
                 count[i] += 1
     return count
 
@@ -195,8 +228,7 @@ def _fill_edges(
     w_plane,
     w_mask,
     w_complexity,
-    max_advance,
-    max_length,
+    bounds,
     starts,
     ends,
     costs,
@@ -208,9 +240,9 @@ def _fill_edges(
         for step in range(1, n):
             j = (i + step) % n
             advance = order[j] - order[i] + (lap if j < i else 0.0)
-            if advance > max_advance:
+            if advance > bounds[0]:
                 break
-            if not _admissible(i, j, nodes, order, lap, turn, max_advance, max_length):
+            if not _admissible(i, j, nodes, order, lap, turn, directions, bounds):
                 continue
             dx, dy = nodes[j, 0] - nodes[i, 0], nodes[j, 1] - nodes[i, 1]
             length = np.sqrt(dx * dx + dy * dy)
@@ -240,12 +272,7 @@ def _fill_edges(
                 )
             cost = w_complexity + (w_plane * plane + w_mask * covered) * length / samples
             if directions.size:
-                angle = np.arctan2(dy, dx)
-                smallest = np.pi
-                for d in range(directions.size):
-                    gap = abs((angle - directions[d] + 0.5 * np.pi) % np.pi - 0.5 * np.pi)
-                    smallest = min(smallest, gap)
-                cost += w_orientation * smallest
+                cost += w_orientation * _angle_to_nearest(dx, dy, directions)
             ends[at] = j
             costs[at] = cost
             at += 1

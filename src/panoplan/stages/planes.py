@@ -35,7 +35,7 @@ def wall_pieces(
     walls: list[WallPiece] = []
     rejected: list[RejectedPiece] = []
     columns_needed = max(2, round(config.min_columns * len(view.boundary) / 1024))
-    pending = split(view)[::-1]
+    pending = split(view, config)[::-1]
     while pending:
         columns = pending.pop()
         points = view.boundary[columns]
@@ -63,11 +63,12 @@ def wall_pieces(
     return tuple(walls), tuple(rejected)
 
 
-def split(view: RegisteredLayout) -> list[IntArray]:
+def split(view: RegisteredLayout, config: PlanesConfig) -> list[IntArray]:
     """Column runs S_0, ..., S_k between corners, unknown columns and jumps of range.
 
     Args:
         view: the registered layout; without corners the run is one, to be split by curvature.
+        config: settings; corners may be merged.
 
     Returns:
         Runs of neighbouring columns in image order; a run may wrap around the image's edge.
@@ -79,7 +80,8 @@ def split(view: RegisteredLayout) -> list[IntArray]:
         ratio = distance / np.roll(distance, 1)
         cut = ~known | ~np.roll(known, 1) | (ratio > _JUMP) | (ratio < 1 / _JUMP)
     if view.corners is not None:
-        cut[np.ceil(view.corners).astype(int) % width] = True
+        nearer = config.merge_corners_columns * width / 1024
+        cut[np.ceil(merged_corners(view.corners, nearer, width)).astype(int) % width] = True
     starts = np.flatnonzero(cut)
     if len(starts) == 0:
         starts = np.array([int(np.argmax(distance))])
@@ -90,6 +92,28 @@ def split(view: RegisteredLayout) -> list[IntArray]:
         if len(columns):
             runs.append(columns)
     return runs
+
+
+def merged_corners(corners: FloatArray, nearer: float, width: int) -> FloatArray:
+    """Corners, each run of neighbours nearer than `nearer` columns replaced by its mean.
+
+    Args:
+        corners: (K,) columns in [0, width), sorted.
+        nearer: columns; 0 merges none.
+        width: of the image, at whose edge columns go on.
+
+    Returns:
+        (M,) columns in [0, width), sorted.
+    """
+    if nearer <= 0 or len(corners) < 2:
+        return corners
+    gaps = np.diff(corners, append=corners[0] + width)
+    # Counted from behind the widest gap, no run crosses the image's edge.
+    first = (int(np.argmax(gaps)) + 1) % len(corners)
+    rolled = np.roll(corners, -first)
+    rolled = np.where(rolled < rolled[0], rolled + width, rolled)
+    runs = np.split(rolled, np.flatnonzero(np.diff(rolled) >= nearer) + 1)
+    return np.sort(np.array([run.mean() for run in runs]) % width)
 
 
 def _halves(columns: IntArray, points: FloatArray, config: PlanesConfig) -> list[IntArray]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -47,6 +48,10 @@ def clipped_patch(view: RegisteredLayout, config: RoomsConfig) -> Patch:
     """
     profile = range_profile(view.boundary - view.camera, _BINS, _MAX_GAP_RAD)
     reach = config.clip_radius_ch
+    if config.clip_quartiles > 0 and np.isfinite(profile).any():
+        far = profile > config.clip_quartiles * np.nanpercentile(profile, 25)
+        profile = np.where(far, np.minimum(profile, reach), profile)
+        reach = float(np.nanmax(profile))
     low = np.floor((view.camera - reach) / config.cell_ch).astype(int)
     high = np.floor((view.camera + reach) / config.cell_ch).astype(int) + 1
     first = (int(low[0]), int(low[1]))
@@ -153,12 +158,16 @@ def choose(
     return None, tuple(scores)
 
 
-def overlap(one: RoomDensity, other: RoomDensity) -> float:
-    """Common cells of two masks over the smaller mask's, 0-1."""
+def overlap(
+    one: RoomDensity, other: RoomDensity, over: Literal["smaller", "union"] = "smaller"
+) -> float:
+    """Common cells of two masks over those of the smaller mask, or of their union, 0-1."""
     box = _common_box(one, other)
     if box is None:
         return 0.0
     common = int(np.count_nonzero(_crop(one, box) & _crop(other, box)))
+    if over == "union":
+        return common / (one.mask_cells + other.mask_cells - common)
     return common / min(one.mask_cells, other.mask_cells)
 
 

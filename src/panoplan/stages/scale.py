@@ -15,6 +15,9 @@ from panoplan.types.view import CastLayout
 
 _SUB_STEP_RESOLUTION = 0.002
 _BEAM = 3
+_JACKKNIFE_MIN = 4
+_JACKKNIFE_PARTS = 10
+_JACKKNIFE_REACH = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -26,6 +29,23 @@ class _Points:
     sector_weights: FloatArray
     positions: FloatArray
     rises: FloatArray
+
+
+class _Objective:
+    """Mean entropy over windows at candidates in step units; each is computed once."""
+
+    def __init__(
+        self, points: _Points, windows: list[tuple[int, int]], unit: float, config: ScaleConfig
+    ) -> None:
+        self.points, self.windows, self.unit, self.config = points, windows, unit, config
+        self.known: dict[float, float] = {}
+
+    def __call__(self, candidates: FloatArray) -> FloatArray:
+        fresh = np.array([k for k in candidates if k not in self.known])
+        if fresh.size:
+            values = _mean_entropy(self.points, self.windows, fresh / self.unit, self.config)
+            self.known.update(zip(fresh, values, strict=True))
+        return np.array([self.known[k] for k in candidates])
 
 
 def median_step(views: Sequence[CastLayout]) -> float:
@@ -53,36 +73,67 @@ def recover_scale(views: Sequence[CastLayout], config: ScaleConfig) -> ScaleEsti
     unit = median_step(views) if config.step_unit == "keyframe_step" else 1.0
     if unit <= 0.0 or not (points.sectors >= 0).any():
         return ScaleEstimate(None, "unknown", converged=False, keyframes_used=len(views))
-    starts = _windows(len(views), config)
-    known: dict[float, float] = {}
-
-    def objective(candidates: FloatArray) -> FloatArray:
-        fresh = np.array([k for k in candidates if k not in known])
-        if fresh.size:
-            known.update(
-                zip(fresh, _mean_entropy(points, starts, fresh / unit, config), strict=True)
-            )
-        return np.array([known[k] for k in candidates])
-
+    windows = _windows(len(views), config)
+    objective = _Objective(points, windows, unit, config)
     low, high = _range(points, config)
-    best = _coarse_to_fine(objective, low, high, config)
-    step = config.steps[-1]
-    sigma = None
+    levels = _coarse_to_fine(objective, low, high, config)
+    best, step = levels[-1], config.steps[-1]
+    if config.combine == "mean":
+        alone = (_Objective(points, [window], unit, config) for window in windows)
+        best = float(np.mean([_coarse_to_fine(one, low, high, config) for one in alone]))
     if config.sub_step:
         best, step = _sub_step(objective, best, step, low, high)
-    curve = np.array(sorted(known.items()))
+    curve = np.array(sorted(objective.known.items()))
     curve[:, 0] /= unit
     curve.setflags(write=False)
     return ScaleEstimate(
         ch_per_su=best / unit,
         method="entropy",
-        sigma=sigma,
         search_range=(low / unit, high / unit),
         curve=curve,
         at_edge=best <= low + step or best >= high - step,
         converged=False,
         keyframes_used=len(views),
     )
+
+
+def scale_sigma(views: Sequence[CastLayout], ch_per_su: float, config: ScaleConfig) -> float | None:
+    """How uncertain a recovered scale is.
+
+    Jackknife: the scale is found anew without one stretch of the walk at a time, near the one
+    found with all of it.
+
+    Args:
+        views: those that the scale was recovered from.
+        ch_per_su: the scale.
+        config: settings.
+
+    Returns:
+        Relative standard deviation; None for fewer than four views, too few to leave any out, and
+        where `sub_step` is off: then the step of the search says more than the data.
+
+    Source: docs/deviations.md; not in the paper.
+    """
+    if len(views) < _JACKKNIFE_MIN or not config.sub_step:
+        return None
+    candidates = ch_per_su * (1.0 + _JACKKNIFE_REACH * np.linspace(-1.0, 1.0, 17))
+    found = []
+    for left_out in np.array_split(np.arange(len(views)), min(_JACKKNIFE_PARTS, len(views))):
+        rest = [view for k, view in enumerate(views) if k not in left_out]
+        points = _points(rest, config)
+        values = _mean_entropy(points, _windows(len(rest), config), candidates, config)
+        found.append(_vertex(candidates / ch_per_su, values))
+    count = len(found)
+    return float(np.sqrt((count - 1) * np.var(found)))
+
+
+def _vertex(at: FloatArray, values: FloatArray) -> float:
+    """Lowest point of a parabola through the values around the smallest one."""
+    middle = int(np.clip(np.argmin(values), 3, len(at) - 4))
+    part = slice(middle - 3, middle + 4)
+    a, b, _ = np.polyfit(at[part] - at[middle], values[part], 2)
+    lowest = at[middle] - b / (2 * a) if a > 0 else at[int(np.argmin(values))]
+    return float(np.clip(lowest, at[0], at[-1]))
 
 
 def _points(views: Sequence[CastLayout], config: ScaleConfig) -> _Points:
@@ -145,6 +196,7 @@ def _mean_entropy(
                     cell,
                     config.facings,
                     config.smooth,
+                    config.saturation,
                 )
     return total / (len(windows) * len(config.cells_ch))
 
@@ -163,10 +215,10 @@ def _range(points: _Points, config: ScaleConfig) -> tuple[float, float]:
 
 def _coarse_to_fine(
     objective: Callable[[FloatArray], FloatArray], low: float, high: float, config: ScaleConfig
-) -> float:
-    """Best candidate of the last level; each level searches around the best few of the last."""
+) -> list[float]:
+    """Best candidate of each level; each level searches around the best few of the last."""
     around: list[float] | None = None
-    best = low
+    best = []
     for level, step in enumerate(config.steps):
         multiples = np.arange(np.ceil(low / step), np.floor(high / step) + 1)
         candidates = np.unique(np.concatenate([[low, high], multiples * step]))
@@ -180,7 +232,7 @@ def _coarse_to_fine(
             candidates = candidates[mask]
         values = objective(candidates)
         order = np.argsort(values, kind="stable")
-        best = float(candidates[order[0]])
+        best.append(float(candidates[order[0]]))
         around = [float(candidates[i]) for i in order[:_BEAM]]
     return best
 

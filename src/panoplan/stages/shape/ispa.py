@@ -9,7 +9,7 @@ from scipy import ndimage
 from shapely import Polygon
 
 from panoplan.config import ShapeConfig
-from panoplan.geometry.graph import EdgeWeights, build_graph, shortest_cycle
+from panoplan.geometry.graph import EdgeLimits, EdgeWeights, build_graph, shortest_cycle
 from panoplan.geometry.polygons import counter_clockwise
 from panoplan.stages.shape.candidates import (
     Candidates,
@@ -96,6 +96,7 @@ def _shortest(
     turned = np.array([o.direction for o in orientations]) - np.arctan2(
         grid.axes[0, 1], grid.axes[0, 0]
     )
+    per_cell = grid.cell if config.cost_unit == "camera_height" else 1.0
     graph = build_graph(
         candidates.nodes,
         candidates.order,
@@ -106,12 +107,16 @@ def _shortest(
         turned,
         EdgeWeights(
             orientation=config.weight_orientation,
-            plane=config.weight_plane * grid.cell,
-            mask=config.weight_mask * grid.cell,
+            plane=config.weight_plane * per_cell,
+            mask=config.weight_mask * per_cell,
             complexity=config.weight_complexity,
         ),
-        max_advance=2.0 * config.max_edge_cells if limit else candidates.lap,
-        max_length=config.max_edge_cells if limit else np.inf,
+        EdgeLimits(
+            advance=2.0 * config.max_edge_cells if limit else candidates.lap,
+            length=config.max_edge_cells if limit else np.inf,
+            manhattan=config.edge_length == "manhattan",
+            angle=float(np.deg2rad(config.max_edge_angle_deg)),
+        ),
     )
     cycle = shortest_cycle(graph)
     return None if cycle is None else candidates.nodes[cycle[0]]
