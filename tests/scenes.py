@@ -20,8 +20,13 @@ def yaw(beta):
 
 
 def ranges(polygon, camera, directions):
-    """Distance from `camera` to the nearest edge along each (N, 2) unit direction."""
-    a, edge = polygon - camera, np.roll(polygon, -1, axis=0) - polygon
+    """Distance from `camera` to the nearest edge along each (N, 2) unit direction.
+
+    `polygon` is a ring, or a list of rings.
+    """
+    rings = polygon if isinstance(polygon, list) else [polygon]
+    a = np.concatenate(rings) - camera
+    edge = np.concatenate([np.roll(ring, -1, axis=0) - ring for ring in rings])
     d = directions[:, None, :]
     cross = d[..., 0] * edge[:, 1] - d[..., 1] * edge[:, 0]
     with np.errstate(divide="ignore", invalid="ignore"):

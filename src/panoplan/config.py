@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 import difflib
+import itertools
 import types
 import typing
 from collections.abc import Mapping
@@ -51,6 +52,36 @@ class RegistrationConfig:
         "Camera height of a keyframe follows its pose, h_i = 1 + s (y_1 - y_i); otherwise h = 1.",
         paper=False,
     )
+    sigma_ranges_ch: tuple[float, ...] = _setting(
+        (0.33, 0.83, 1.17, 1.67, 2.33, 3.33),
+        "Ranges at which `sigma_deg` is given, increasing.",
+        unit="camera heights",
+        low=0.0,
+        high=100.0,
+    )
+    sigma_deg: tuple[float, ...] = _setting(
+        (0.89, 0.67, 0.48, 0.58, 0.70, 0.82),
+        "Standard deviation of a boundary's elevation at those ranges: MAD-sigma of a layout "
+        "network on 69 real panoramas. A network's own figure counts where it is larger.",
+        unit="deg",
+        low=1e-3,
+        high=45.0,
+    )
+    scale_bias: float = _setting(
+        0.02,
+        "Standard deviation of the common scale of one panorama's ranges; 1.5 % (MAD) to 2.8 % on "
+        "the same panoramas.",
+        low=0.0,
+        high=0.5,
+    )
+
+    def __post_init__(self) -> None:
+        """Checks that the two tables match."""
+        ranges = self.sigma_ranges_ch
+        if len(ranges) != len(self.sigma_deg) or any(b <= a for a, b in itertools.pairwise(ranges)):
+            raise ConfigError(
+                "registration.sigma_ranges_ch", repr(ranges), "increasing, one for each sigma_deg"
+            )
 
 
 @dataclass(frozen=True)
@@ -408,6 +439,13 @@ class OrientationConfig:
 class ShapeConfig:
     """Room shape by iterative shortest path (Eq. 8-11)."""
 
+    method: Literal["ispa", "fusion"] = _setting(
+        "fusion",
+        "How a room gets its shape: iSPA of the paper, or its views fused and its walls fitted to "
+        "the raw columns (`grouping`, `fusion`, `outline`).",
+        paper="ispa",
+    )
+
     grids: tuple[int, ...] = _setting(
         (64, 96, 96),
         "Cells along the longer side of the room's box, one number a round.",
@@ -558,6 +596,185 @@ class ShapeConfig:
 
 
 @dataclass(frozen=True)
+class GroupingConfig:
+    """Which views are of one room, looked at together; goes past the paper."""
+
+    cell_ch: float = _setting(
+        0.07, "Cell in which common areas are counted.", unit="camera heights", low=0.01, high=1.0
+    )
+    reach_ch: float = _setting(
+        7.0,
+        "A view says nothing of what is farther away: there an error of 1° is two thirds of a "
+        "camera height.",
+        unit="camera heights",
+        low=0.5,
+        high=100.0,
+    )
+    min_overlap: float = _setting(
+        0.6,
+        "Views are linked while the mean of their common areas, each over the smaller of the two, "
+        "is at least this; any value of .5-.8 gives nearly the same rooms.",
+        low=0.05,
+        high=1.0,
+    )
+    doorway_ch: float = _setting(
+        0.17,
+        "A camera this near to another view's boundary, and no deeper inside any, stands in a "
+        "doorway: its layout is several times worse and shows two rooms.",
+        unit="camera heights",
+        low=0.0,
+        high=2.0,
+    )
+    pass_tolerance_ch: float = _setting(
+        0.14,
+        "A view ends at a place where its range differs by less than this.",
+        unit="camera heights",
+        low=0.01,
+        high=1.0,
+    )
+    pass_share: float = _setting(
+        0.6,
+        "Two groups of views are joined across a line where more than this share of the views that "
+        "reach it look through it, as at the bend of a corridor.",
+        low=0.0,
+        high=1.0,
+    )
+    neck_ratio: float = _setting(
+        0.75,
+        "... if that line is at least so long against the narrower side's width: people name what "
+        "lies behind a narrower passage another room.",
+        low=0.0,
+        high=10.0,
+    )
+    neck_min_ch: float = _setting(
+        0.4, "... and at least so long.", unit="camera heights", low=0.0, high=10.0
+    )
+
+
+@dataclass(frozen=True)
+class FusionConfig:
+    """A room's views fused into one signed distance field; goes past the paper."""
+
+    cell_ch: float = _setting(
+        0.035, "Cell of the field, 5 cm.", unit="camera heights", low=0.005, high=0.5
+    )
+    truncation_ch: float = _setting(
+        0.2,
+        "Distances to a view's boundary count up to this, 0.3 m: about twice a wall's thickness.",
+        unit="camera heights",
+        low=0.02,
+        high=2.0,
+    )
+    blur_ch: float = _setting(
+        0.15,
+        "Standard deviation a range has at least when views vote. Without it one view of a nearby "
+        "piece of furniture outvotes all that see past it.",
+        unit="camera heights",
+        low=0.0,
+        high=2.0,
+    )
+    beyond_weight: float = _setting(
+        0.1,
+        "Weight of a view for what lies farther behind its boundary than the truncation: it sees "
+        "nothing there, yet there is rather no room.",
+        low=0.0,
+        high=1.0,
+    )
+    reach_ch: float = _setting(
+        9.0, "The field ends so far from a camera.", unit="camera heights", low=0.5, high=100.0
+    )
+    opening_cells: int = _setting(
+        5,
+        "What is narrower than so many cells is no part of a room: slits between a wall and what "
+        "stands before it.",
+        unit="cells",
+        low=1,
+        high=100,
+    )
+    min_area_ch2: float = _setting(
+        0.12,
+        "Smallest room, 0.25 m²: a closet.",
+        unit="square camera heights",
+        low=0.0,
+        high=100.0,
+    )
+    min_hole_ch2: float = _setting(
+        0.04,
+        "Smallest hole, 0.08 m²: a pillar.",
+        unit="square camera heights",
+        low=0.0,
+        high=100.0,
+    )
+
+
+@dataclass(frozen=True)
+class OutlineConfig:
+    """Straight walls from a fused field and the raw columns; goes past the paper."""
+
+    step_ch: float = _setting(
+        0.035,
+        "Distance of the outline's points.",
+        unit="camera heights",
+        low=0.005,
+        high=0.5,
+    )
+    point_sigma_ch: float = _setting(
+        0.03,
+        "Standard deviation of the outline's points about a wall.",
+        unit="camera heights",
+        low=0.001,
+        high=1.0,
+    )
+    corner_cost: float = _setting(
+        8.0,
+        "A corner must save so much of the points' squared distances over `point_sigma_ch`²: on "
+        "simulated flats this gives as many corners as there are.",
+        low=0.0,
+        high=1e6,
+    )
+    fit_reach_ch: float = _setting(
+        0.1,
+        "Columns this near to a wall take part in its fit.",
+        unit="camera heights",
+        low=0.01,
+        high=1.0,
+    )
+    fit_rounds: int = _setting(
+        3, "Fits in a row, each with half, a third, ... of that reach.", low=1, high=20
+    )
+    grazing_deg: float = _setting(
+        10.0,
+        "A wall seen at a smaller angle than this to it is not fitted: an error of range moves "
+        "columns along it.",
+        unit="deg",
+        low=0.0,
+        high=89.0,
+    )
+    turn_sigma_deg: float = _setting(
+        3.0,
+        "Standard deviation of a wall's direction about that of its piece of the outline, so that "
+        "a short wall is not turned by a few columns.",
+        unit="deg",
+        low=0.01,
+        high=90.0,
+    )
+    straight_deg: float = _setting(
+        10.0,
+        "Neighbouring pieces that turn by less than this and lie on one line are one wall.",
+        unit="deg",
+        low=0.0,
+        high=45.0,
+    )
+    correlation_columns: float = _setting(
+        76.0,
+        "Columns of 1024 after which errors of one view are independent, measured on real "
+        "predictions: so many count as one when a wall's uncertainty is told.",
+        low=1.0,
+        high=1024.0,
+    )
+
+
+@dataclass(frozen=True)
 class Config:
     """All settings of a run."""
 
@@ -569,6 +786,9 @@ class Config:
     planes: PlanesConfig = field(default_factory=PlanesConfig)
     orientation: OrientationConfig = field(default_factory=OrientationConfig)
     shape: ShapeConfig = field(default_factory=ShapeConfig)
+    grouping: GroupingConfig = field(default_factory=GroupingConfig)
+    fusion: FusionConfig = field(default_factory=FusionConfig)
+    outline: OutlineConfig = field(default_factory=OutlineConfig)
 
     def __post_init__(self) -> None:
         """Checks every field's type and range."""
@@ -597,7 +817,13 @@ _PAPER: dict[str, Any] = {
     },
     "planes": {"resplit": False, "max_range_ch": 100.0},
     "orientation": {"full_length_ch": 0.0},
-    "shape": {"core_factor": 0.0, "mask_margin_ch": 0.0, "wall_merge_ch": 10.0, "wall_floor": 1e-6},
+    "shape": {
+        "method": "ispa",
+        "core_factor": 0.0,
+        "mask_margin_ch": 0.0,
+        "wall_merge_ch": 10.0,
+        "wall_floor": 1e-6,
+    },
 }
 
 # The public code's settings as observed (docs/deviations.md). Its thresholds are metres; here they
@@ -643,6 +869,7 @@ _RELEASED: dict[str, Any] = {
         "final_sigma_deg": 3600.0,
     },
     "shape": {
+        "method": "ispa",
         "grids": (96, 128, 128),
         "edge_length": "manhattan",
         "max_edge_angle_deg": 15.0,
@@ -663,7 +890,7 @@ _RELEASED: dict[str, Any] = {
 
 _CHANGES: dict[str, dict[str, Any]] = {
     "default": {},
-    "sound": {},
+    "sound": {"shape": {"method": "ispa"}},
     "paper": _PAPER,
     "released": _RELEASED,
 }

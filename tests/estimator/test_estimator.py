@@ -16,6 +16,7 @@ from panoplan.types.events import (
     RoomOpened,
     RoomShaped,
     RoomsJoined,
+    RoomsRegrouped,
     ScaleFrozen,
 )
 from panoplan.types.keyframe import Keyframe
@@ -205,15 +206,34 @@ def test_a_camera_that_stands_below_the_floor_is_left_out():
     assert plan.skipped[-1].reason == "its pose lies below the floor"
 
 
-def test_a_view_of_parts_of_two_rooms_is_absorbed_at_the_end():
-    """A gross layout from the doorway, half in each room, is no third room."""
+def _with_a_gross_view():
+    """A gross layout from the doorway, half in each room, between those of the two rooms."""
     keyframes = _two_rooms()
     half = np.array([[1.2, -1.4], [2.9, -1.4], [2.9, 2.6], [1.2, 2.6]])
     (gross,) = walk(half, [[2.05, 0.0]])
-    estimator = FloorPlanEstimator(EARLY)
-    for keyframe in [*keyframes[:10], replace(gross, id="gross"), *keyframes[10:]]:
-        estimator.update(keyframe)
-    assert len(estimator.state.rooms) == 3
-    joined = [e for e in estimator.finish() if isinstance(e, RoomsJoined)]
-    assert len(joined) == 1
-    assert len(estimator.plan().rooms) == 2
+    return [*keyframes[:10], replace(gross, id="gross"), *keyframes[10:]]
+
+
+@pytest.mark.parametrize(("method", "event"), [("ispa", RoomsJoined), ("fusion", RoomsRegrouped)])
+def test_a_view_of_parts_of_two_rooms_is_no_third_room(method, event):
+    estimator = FloorPlanEstimator(override(EARLY, {"shape": {"method": method}}))
+    events = [e for keyframe in _with_a_gross_view() for e in estimator.update(keyframe)]
+    assert len([e for e in events if isinstance(e, RoomOpened)]) == 3
+    events += estimator.finish()
+    assert [e for e in events if isinstance(e, event)]
+    plan = estimator.plan()
+    assert len(plan.rooms) == 2
+    assert sorted(k for room in plan.rooms for k in room.keyframes) == sorted(
+        pose.id for pose in plan.trajectory
+    )
+
+
+def test_a_walls_sigma_and_a_pillar_reach_the_plan():
+    pillar = np.array([[0.2, -0.3], [0.2, 0.3], [0.6, 0.3], [0.6, -0.3]])
+    free = Polygon(RECTANGLE, [pillar]).buffer(-0.3)
+    cameras = [c for c in _cameras(RECTANGLE, 24) if free.contains(Point(c))]
+    (room,) = _plan(walk([RECTANGLE, pillar], cameras)).rooms
+    (hole,) = room.holes
+    assert Polygon(hole).symmetric_difference(Polygon(pillar)).area < 0.02
+    assert not Polygon(hole).exterior.is_ccw
+    assert all(wall.sigma is not None and 0.001 < wall.sigma < 0.05 for wall in room.walls)

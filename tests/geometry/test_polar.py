@@ -1,7 +1,14 @@
 import numpy as np
 import pytest
 
-from panoplan.geometry.polar import range_profile, star_evidence
+from panoplan.geometry.polar import (
+    depths_inside,
+    mutual_overlaps,
+    passing_votes,
+    range_profile,
+    signed_distance_sums,
+    star_evidence,
+)
 from panoplan.geometry.sphere import column_heading
 
 
@@ -38,3 +45,71 @@ def test_the_first_axis_lies_a_quarter_turn_clockwise_of_the_second():
     assert free[45, 30] == 1
     assert free[30, 45] == 0
     assert free[15, 30] == 0
+
+
+def _square_profile(camera, half, bins=1024):
+    """Ranges from a camera to the square [-half, half]²."""
+    angle = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
+    ahead = np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    with np.errstate(divide="ignore"):
+        to_wall = np.where(ahead > 0, half - camera, -half - camera) / ahead
+    return to_wall.min(axis=1)
+
+
+def test_signed_distance_along_the_ray_is_truncated_and_weighted():
+    camera = np.array([0.05, 0.05])
+    profile = _square_profile(camera, 1.0)
+    total, weight = signed_distance_sums(
+        camera[None], profile[None], np.full((1, 1024), 0.3), 0.2, 0.4, 0.5, 0.1, (0, 0), (15, 1)
+    )
+    distance = total[:, 0] / weight[:, 0]
+    # Cell (i, 0) lies (i + ½)/10 - 0.05 = i/10 in front of the camera, the wall at 0.95.
+    assert distance[[0, 7]] == pytest.approx([0.2, 0.2])
+    assert distance[[8, 9, 10, 11]] == pytest.approx([0.15, 0.05, -0.05, -0.15], abs=1e-4)
+    assert distance[12] == pytest.approx(-0.2)
+    assert weight[[0, 11], 0] == pytest.approx([4.0, 4.0])
+    assert weight[12, 0] == pytest.approx(2.0)
+
+
+def test_unknown_headings_say_nothing():
+    profile = np.full((1, 64), np.nan)
+    profile[0, :32] = 1.0
+    total, weight = signed_distance_sums(
+        np.zeros((1, 2)), profile, np.ones((1, 64)), 0.2, 0.0, 0.1, 0.1, (-8, -8), (16, 16)
+    )
+    # The first half of the headings, from -π to 0, has x < 0.
+    assert (weight[:7] > 0).all()
+    assert (weight[9:] == 0).all()
+    assert (total[9:] == 0).all()
+
+
+def test_votes_of_views_that_pass_and_that_end():
+    cameras = np.array([[0.0, 0.0], [0.5, 0.0]])
+    profiles = np.stack([_square_profile(c, 1.0) for c in cameras])
+    points = np.array([[-0.5, 0.0], [1.05, 0.0], [1.3, 0.0]])
+    through, ending = passing_votes(cameras, profiles, points, 0.1)
+    assert through.tolist() == [2, 0, 0]
+    assert ending.tolist() == [0, 2, 0]
+
+
+def test_depth_of_cameras_inside_one_anothers_region():
+    cameras = np.array([[0.0, 0.0], [0.7, 0.0], [1.2, 0.0]])
+    profiles = np.stack([_square_profile(c, 1.0) for c in cameras[:2]] + [np.full(1024, 0.1)])
+    depth = depths_inside(cameras, profiles, 10.0)
+    assert depth[1, 0] == pytest.approx(0.3, abs=0.01)
+    assert depth[2, 0] == pytest.approx(-0.2, abs=0.01)
+    assert depth[0, 2] == pytest.approx(-1.1, abs=0.01)
+    assert np.isneginf(np.diag(depth)).all()
+    assert np.isneginf(depths_inside(cameras, profiles, 1.0)[0, 2])
+
+
+def test_overlap_of_two_squares_over_the_smaller():
+    cameras = np.array([[0.0, 0.0], [0.0, 0.0], [5.0, 0.0]])
+    profiles = np.stack([_square_profile(np.zeros(2), half) for half in (1.0, 0.5, 1.0)])
+    common = mutual_overlaps(cameras, profiles, 10.0, 0.02)
+    assert common[0, 1] == pytest.approx(1.0, abs=0.01)
+    assert common[0, 2] == 0.0
+    moved = np.array([[0.0, 0.0], [1.0, 0.3], [5.0, 0.0]])
+    half_off = mutual_overlaps(moved, profiles[[0, 0, 0]], 10.0, 0.02)
+    assert half_off[0, 1] == pytest.approx(0.5 * 0.85, abs=0.02)
+    assert (common == common.T).all()

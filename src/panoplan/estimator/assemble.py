@@ -2,17 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 
 from panoplan import __version__
 from panoplan.config import Config, as_dict
-from panoplan.estimator.state import RoomState, State
-from panoplan.estimator.step import room_id
+from panoplan.estimator.state import RoomState, State, room_id
 from panoplan.geometry.angles import line_angle
-from panoplan.geometry.polygons import counter_clockwise
 from panoplan.stages import orientation
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import FloorPlan, PlanPose, Room, ScaleEstimate, Unit, Wall
+from panoplan.types.room import RoomShape
 
 
 def assemble(state: State, config: Config) -> FloorPlan:
@@ -48,7 +50,7 @@ def assemble(state: State, config: Config) -> FloorPlan:
 
     rooms, walls = [], 0
     for room in state.rooms:
-        made = _room(room, state, config, to_plan(_canonical(room)), walls, world_from_walk)
+        made = _room(room, state, config, to_plan, length, walls)
         walls += len(made.walls)
         rooms.append(made)
     trajectory = tuple(
@@ -73,42 +75,47 @@ def assemble(state: State, config: Config) -> FloorPlan:
     )
 
 
-def _canonical(room: RoomState) -> FloatArray:
-    """The polygon from its first corner in the walk frame, so that wall numbers are stable."""
-    if room.shape is None or room.shape.polygon is None:
-        return np.empty((0, 2))
-    polygon = room.shape.polygon
-    first = int(np.lexsort((polygon[:, 1], polygon[:, 0]))[0])
-    return np.roll(polygon, -first, axis=0)
+def _first_corner(polygon: FloatArray) -> int:
+    """The corner to begin at, by its place in the walk frame, so that wall numbers are stable."""
+    return int(np.lexsort((polygon[:, 1], polygon[:, 0]))[0])
 
 
 def _room(
     room: RoomState,
     state: State,
     config: Config,
-    polygon: FloatArray,
+    to_plan: Callable[[FloatArray], FloatArray],
+    length: float,
     walls_before: int,
-    world_from_walk: FloatArray,
 ) -> Room:
-    directions, flagged = orientation.accepted(room.orientations, config.orientation)
-    angle = float(np.arctan2(world_from_walk[1, 0], world_from_walk[0, 0]))
-    failure = None
-    if room.shape is None:
-        failure = "the camera has not left it yet"
-    elif room.shape.polygon is None:
-        failure = room.shape.failure
-    ring = counter_clockwise(polygon) if len(polygon) else polygon
-    walls = tuple(
-        Wall(f"wall_{walls_before + k + 1:02d}", ring[k], ring[(k + 1) % len(ring)])
-        for k in range(len(ring))
-    )
-    return Room(
+    shape = room.shape or RoomShape(None, "the camera has not left it yet")
+    made = Room(
         id=room_id(room.number),
         name=f"Room {room.number}",
-        polygon=ring if len(ring) else None,
-        failure=failure,
+        polygon=None,
+        failure=shape.failure,
         keyframes=tuple(c.keyframe for c in state.cameras if c.room == room.number),
-        walls=walls,
-        orientations=tuple(float(line_angle(o.direction + angle)) for o in directions),
-        flags=("orientation_below_gate",) if flagged else (),
     )
+    directions, flagged = orientation.accepted(room.orientations, config.orientation)
+    if directions:
+        turned = to_plan(np.eye(2)) - to_plan(np.zeros((2, 2)))
+        angle = float(np.arctan2(turned[0, 1], turned[0, 0]))
+        made = replace(
+            made,
+            orientations=tuple(float(line_angle(o.direction + angle)) for o in directions),
+            flags=("orientation_below_gate",) if flagged else (),
+        )
+    if shape.polygon is None:
+        return made
+    first = _first_corner(shape.polygon)
+    ring = to_plan(np.roll(shape.polygon, -first, axis=0))
+    sigmas: list[float | None] = [None] * len(ring)
+    if shape.sigmas is not None:
+        told = length * np.roll(shape.sigmas, -first)
+        sigmas = [float(s) if np.isfinite(s) else None for s in told]
+    walls = tuple(
+        Wall(f"wall_{walls_before + k + 1:02d}", ring[k], ring[(k + 1) % len(ring)], sigma)
+        for k, sigma in enumerate(sigmas)
+    )
+    holes = tuple(to_plan(hole) for hole in shape.holes)
+    return replace(made, polygon=ring, walls=walls, holes=holes)

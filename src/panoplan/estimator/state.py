@@ -8,7 +8,12 @@ from typing import Literal
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import ScaleEstimate, Skipped
 from panoplan.types.room import Orientation, RoomDensity, RoomShape, WallPiece
-from panoplan.types.view import CastLayout
+from panoplan.types.view import CastLayout, RegisteredLayout
+
+
+def room_id(number: int) -> str:
+    """Id of the room with this number."""
+    return f"room_{number:02d}"
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,7 @@ class RoomState:
         density: evidence for each cell.
         walls: accepted pieces.
         orientations: wall directions.
+        views: registered layouts, in the order of the walk; none where iSPA makes the shapes.
         shape: as last computed, or None.
         stale: whether evidence came since then.
         away: keyframes in a row assigned elsewhere; −1 once the room has been left.
@@ -68,6 +74,7 @@ class RoomState:
     density: RoomDensity
     walls: tuple[WallPiece, ...]
     orientations: tuple[Orientation, ...]
+    views: tuple[RegisteredLayout, ...] = ()
     shape: RoomShape | None = None
     stale: bool = True
     away: int = 0

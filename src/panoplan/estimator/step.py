@@ -9,7 +9,8 @@ import numpy as np
 
 from panoplan.config import Config
 from panoplan.errors import ConfigError
-from panoplan.estimator.state import PlacedCamera, RoomState, State, WalkFrame
+from panoplan.estimator.settle import settle, settle_around
+from panoplan.estimator.state import PlacedCamera, RoomState, State, WalkFrame, room_id
 from panoplan.geometry.rigid import heading_of, turn
 from panoplan.stages import orientation, planes, rooms, scale
 from panoplan.stages.registration import cast, register
@@ -26,12 +27,8 @@ from panoplan.types.events import (
 )
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.plan import ScaleEstimate, Skipped
-from panoplan.types.view import CastLayout
-
-
-def room_id(number: int) -> str:
-    """Id of the room with this number."""
-    return f"room_{number:02d}"
+from panoplan.types.room import RejectedPiece, WallPiece
+from panoplan.types.view import CastLayout, RegisteredLayout
 
 
 def step(state: State, keyframe: Keyframe, config: Config) -> tuple[State, tuple[Event, ...]]:
@@ -86,6 +83,9 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
     if state.scale is None and state.waiting:
         state, told = _freeze(state, _estimate(state, config), config)
         events += told
+    if config.shape.method == "fusion":
+        state, settled = settle(state, range(len(state.rooms)), config)
+        return state, (*events, *settled)
     state, joined = _absorb(state, config)
     events += joined
     for index in range(len(state.rooms)):
@@ -170,11 +170,12 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
     patch = rooms.clipped_patch(layout, config.rooms)
     known = [room.density for room in state.rooms]
     chosen, _ = rooms.choose(patch, known, state.current, config.rooms)
-    rng = np.random.default_rng([config.seed, view.index])
-    walls, rejected = planes.wall_pieces(layout, config.planes, rng)
+    fused = config.shape.method == "fusion"
+    walls, rejected = ((), ()) if fused else _walls(layout, config)
+    views = (layout,) if fused else ()
     if chosen is None:
         number = max((room.number for room in state.rooms), default=0) + 1
-        room = RoomState(number, patch.density, walls, ())
+        room = RoomState(number, patch.density, walls, (), views)
         chosen = len(state.rooms)
         events.append(RoomOpened(view.keyframe, room_id(number)))
     else:
@@ -183,6 +184,7 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
             old,
             density=rooms.add(old.density, patch.density, config.rooms),
             walls=(*old.walls, *walls),
+            views=(*old.views, *views),
         )
     for wall in walls:
         room = replace(
@@ -205,6 +207,14 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
     events += told
     state, told = _leave(state, config)
     return state, (*events, *told)
+
+
+def _walls(
+    layout: RegisteredLayout, config: Config
+) -> tuple[tuple[WallPiece, ...], tuple[RejectedPiece, ...]]:
+    rng = np.random.default_rng([config.seed, layout.index])
+    accepted, rejected = planes.wall_pieces(layout, config.planes, rng)
+    return tuple(accepted), tuple(rejected)
 
 
 def _assigned(
@@ -267,6 +277,7 @@ def _merged(state: State, kept_at: int, gone_at: int, config: Config) -> tuple[S
         kept,
         density=rooms.add(kept.density, gone.density, config.rooms),
         walls=(*kept.walls, *gone.walls),
+        views=tuple(sorted((*kept.views, *gone.views), key=lambda view: view.index)),
         orientations=orientations,
         stale=True,
         away=kept.away if gone.away < 0 else 0,
@@ -291,16 +302,23 @@ def _merged(state: State, kept_at: int, gone_at: int, config: Config) -> tuple[S
 
 def _leave(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
     """Counts keyframes away from each open room; shapes those that have been left."""
-    events: list[Event] = []
+    left = []
     for index, room in enumerate(state.rooms):
         if index == state.current or room.away < 0:
             continue
-        left = room.away + 1 >= config.rooms.leave_after
-        changed = replace(room, away=-1 if left else room.away + 1)
+        gone = room.away + 1 >= config.rooms.leave_after
+        changed = replace(room, away=-1 if gone else room.away + 1)
         state = replace(state, rooms=(*state.rooms[:index], changed, *state.rooms[index + 1 :]))
-        if left:
-            state, told = _shape(state, index, config)
-            events += told
+        if gone:
+            left.append(room.number)
+    events: list[Event] = []
+    for number in left:
+        # Settling one room may renumber or remove another.
+        for index, room in enumerate(state.rooms):
+            if room.number == number:
+                state, told = _shape(state, index, config)
+                events += told
+                break
     return state, tuple(events)
 
 
@@ -308,6 +326,8 @@ def _shape(state: State, index: int, config: Config) -> tuple[State, tuple[Event
     room = state.rooms[index]
     if not room.stale:
         return state, ()
+    if config.shape.method == "fusion":
+        return settle_around(state, index, config)
     directions, _ = orientation.accepted(room.orientations, config.orientation)
     shape = room_shape(
         rooms.density(room.density, config.rooms),

@@ -114,3 +114,245 @@ def _star_evidence(cx, cy, profile, radius, band, beyond_weight, cell, i0, j0, f
                 against[i, j] = 1.0
             else:
                 against[i, j] = beyond_weight
+
+
+def signed_distance_sums(
+    cameras: FloatArray,
+    profiles: FloatArray,
+    sigmas: FloatArray,
+    truncation: float,
+    blur: float,
+    beyond_weight: float,
+    cell: float,
+    first_cell: tuple[int, int],
+    shape: tuple[int, int],
+) -> tuple[FloatArray, FloatArray]:
+    """Weighted sums of the views' truncated signed distances along their rays.
+
+    A view's distance at a cell is its range in the cell's direction less that of the cell,
+    truncated; its weight is 1 / (sigma² + blur²) with the sigma of that range.
+
+    Args:
+        cameras: (V, 2) positions.
+        profiles: (V, B) ranges as `range_profile` gives them, NaN where unknown.
+        sigmas: (V, B) standard deviations of the ranges.
+        truncation: largest distance that counts.
+        blur: standard deviation that every range has at least.
+        beyond_weight: factor of the weight where a cell lies farther behind the boundary than the
+            truncation, 0-1.
+        cell: cell size; cell (i, j) has its centre at ((i + ½)·cell, (j + ½)·cell).
+        first_cell: index of the first cell of the answer.
+        shape: cells along both axes.
+
+    Returns:
+        (n, m) sum of weight × distance, positive where free, and (n, m) sum of weights.
+    """
+    total = np.zeros(shape)
+    weight = np.zeros(shape)
+    _signed_distance_sums(
+        cameras,
+        profiles,
+        sigmas,
+        truncation,
+        blur,
+        beyond_weight,
+        cell,
+        first_cell[0],
+        first_cell[1],
+        total,
+        weight,
+    )
+    return total, weight
+
+
+@njit(cache=True)
+def _signed_distance_sums(
+    cameras, profiles, sigmas, truncation, blur, beyond_weight, cell, i0, j0, total, weight
+):
+    bins = profiles.shape[1]
+    for v in range(cameras.shape[0]):
+        for i in range(total.shape[0]):
+            x = (i0 + i + 0.5) * cell - cameras[v, 0]
+            for j in range(total.shape[1]):
+                y = (j0 + j + 0.5) * cell - cameras[v, 1]
+                place = (np.arctan2(x, y) + np.pi) * bins / (2 * np.pi) - 0.5
+                low = int(np.floor(place))
+                share = place - low
+                left, right = low % bins, (low + 1) % bins
+                near = left if share < 0.5 else right
+                reach = profiles[v, near]
+                if np.isnan(reach):
+                    near = right if near == left else left
+                    reach = profiles[v, near]
+                    if np.isnan(reach):
+                        continue
+                elif abs(profiles[v, left] - profiles[v, right]) < truncation:
+                    # Interpolated only along one wall, not over a step from one to another.
+                    reach = profiles[v, left] * (1 - share) + profiles[v, right] * share
+                distance = reach - np.sqrt(x * x + y * y)
+                w = 1.0 / (sigmas[v, near] ** 2 + blur * blur)
+                if distance < -truncation:
+                    w *= beyond_weight
+                    distance = -truncation
+                elif distance > truncation:
+                    distance = truncation
+                total[i, j] += w * distance
+                weight[i, j] += w
+
+
+def passing_votes(
+    cameras: FloatArray, profiles: FloatArray, points: FloatArray, tolerance: float
+) -> tuple[FloatArray, FloatArray]:
+    """How many views look through each point and how many end there.
+
+    Args:
+        cameras: (V, 2) positions.
+        profiles: (V, B) ranges as `range_profile` gives them.
+        points: (N, 2).
+        tolerance: a view ends at a point where its range differs by less than this.
+
+    Returns:
+        (N,) views whose range goes beyond the point, and (N,) those that end there; views that
+        end before it take no part.
+    """
+    through = np.zeros(len(points))
+    ending = np.zeros(len(points))
+    _passing_votes(cameras, profiles, points, tolerance, through, ending)
+    return through, ending
+
+
+@njit(cache=True)
+def _passing_votes(cameras, profiles, points, tolerance, through, ending):
+    bins = profiles.shape[1]
+    for p in range(points.shape[0]):
+        for v in range(cameras.shape[0]):
+            x, y = points[p, 0] - cameras[v, 0], points[p, 1] - cameras[v, 1]
+            reach = profiles[v, int((np.arctan2(x, y) + np.pi) * bins / (2 * np.pi)) % bins]
+            beyond = reach - np.sqrt(x * x + y * y)
+            if beyond > tolerance:
+                through[p] += 1
+            elif beyond > -tolerance:
+                ending[p] += 1
+
+
+def depths_inside(cameras: FloatArray, profiles: FloatArray, reach: float) -> FloatArray:
+    """How deep each camera stands inside each view's region.
+
+    Args:
+        cameras: (V, 2) positions.
+        profiles: (V, B) ranges as `range_profile` gives them.
+        reach: pairs farther apart are not looked at.
+
+    Returns:
+        (V, V) distance from camera i to the boundary of view j, negative where it stands outside;
+        −inf on the diagonal, for pairs farther apart than `reach`, and where the boundary of view
+        j is unknown in that direction.
+    """
+    return np.asarray(_depths_inside(cameras, profiles, reach))
+
+
+@njit(cache=True)
+def _depths_inside(cameras, profiles, reach):
+    views, bins = profiles.shape
+    depth = np.full((views, views), -np.inf)
+    angles = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
+    sines, cosines = np.sin(angles), np.cos(angles)
+    for j in range(views):
+        for i in range(views):
+            x, y = cameras[i, 0] - cameras[j, 0], cameras[i, 1] - cameras[j, 1]
+            away = np.sqrt(x * x + y * y)
+            if i == j or away > reach:
+                continue
+            limit = profiles[j, int((np.arctan2(x, y) + np.pi) * bins / (2 * np.pi)) % bins]
+            if np.isnan(limit):
+                continue
+            nearest = np.inf
+            for b in range(bins):
+                r = profiles[j, b]
+                dx, dy = r * sines[b] - x, r * cosines[b] - y
+                squared = dx * dx + dy * dy
+                if squared < nearest:
+                    nearest = squared
+            nearest = np.sqrt(nearest)
+            depth[i, j] = nearest if away < limit else -nearest
+    return depth
+
+
+def mutual_overlaps(
+    cameras: FloatArray, profiles: FloatArray, radius: float, cell: float
+) -> FloatArray:
+    """Common area of each two views' regions over that of the smaller one.
+
+    Args:
+        cameras: (V, 2) positions.
+        profiles: (V, B) ranges as `range_profile` gives them.
+        radius: regions are clipped at it.
+        cell: cell size that areas are counted in.
+
+    Returns:
+        (V, V) symmetric, 0-1, 1 on the diagonal.
+    """
+    reach = np.minimum(np.nan_to_num(np.nanmax(profiles, axis=1)), radius)
+    low = np.floor((cameras - reach[:, None]) / cell).astype(np.int64)
+    high = np.floor((cameras + reach[:, None]) / cell).astype(np.int64) + 1
+    # Rows of whole words on one lattice, so that two masks are compared 64 cells at a time.
+    low[:, 1] //= _WORD
+    high[:, 1] = -(-high[:, 1] // _WORD)
+    sizes = (high - low).prod(axis=1)
+    starts = np.concatenate([[0], np.cumsum(sizes)])
+    words = np.zeros(starts[-1], dtype=np.uint64)
+    _fill_words(cameras, profiles, radius, cell, low, high, starts, words)
+    return np.asarray(_word_overlaps(low, high, starts, words))
+
+
+_WORD = 64
+
+
+@njit(cache=True)
+def _fill_words(cameras, profiles, radius, cell, low, high, starts, words):
+    bins = profiles.shape[1]
+    for v in range(cameras.shape[0]):
+        width = high[v, 1] - low[v, 1]
+        for i in range(low[v, 0], high[v, 0]):
+            x = (i + 0.5) * cell - cameras[v, 0]
+            for j in range(64 * low[v, 1], 64 * high[v, 1]):
+                y = (j + 0.5) * cell - cameras[v, 1]
+                r = profiles[v, int((np.arctan2(x, y) + np.pi) * bins / (2 * np.pi)) % bins]
+                if x * x + y * y < min(r, radius) ** 2:
+                    at = starts[v] + (i - low[v, 0]) * width + (j // 64 - low[v, 1])
+                    words[at] |= np.uint64(1) << np.uint64(j % 64)
+
+
+@njit(cache=True)
+def _bits(word):
+    word = word - ((word >> np.uint64(1)) & np.uint64(0x5555555555555555))
+    word = (word & np.uint64(0x3333333333333333)) + (
+        (word >> np.uint64(2)) & np.uint64(0x3333333333333333)
+    )
+    word = (word + (word >> np.uint64(4))) & np.uint64(0x0F0F0F0F0F0F0F0F)
+    return (word * np.uint64(0x0101010101010101)) >> np.uint64(56)
+
+
+@njit(cache=True)
+def _word_overlaps(low, high, starts, words):
+    views = low.shape[0]
+    area = np.zeros(views)
+    for v in range(views):
+        for k in range(starts[v], starts[v + 1]):
+            area[v] += _bits(words[k])
+    out = np.eye(views)
+    for a in range(views):
+        for b in range(a):
+            i0, i1 = max(low[a, 0], low[b, 0]), min(high[a, 0], high[b, 0])
+            j0, j1 = max(low[a, 1], low[b, 1]), min(high[a, 1], high[b, 1])
+            if i0 >= i1 or j0 >= j1:
+                continue
+            common = 0.0
+            for i in range(i0, i1):
+                row_a = starts[a] + (i - low[a, 0]) * (high[a, 1] - low[a, 1]) - low[a, 1]
+                row_b = starts[b] + (i - low[b, 0]) * (high[b, 1] - low[b, 1]) - low[b, 1]
+                for j in range(j0, j1):
+                    common += _bits(words[row_a + j] & words[row_b + j])
+            out[a, b] = common / max(1.0, min(area[a], area[b]))
+            out[b, a] = out[a, b]
+    return out

@@ -54,6 +54,7 @@ def cast(
         position_su=walk_from_world @ moved[[0, 2]],
         rise_su=float(-moved[1]) if config.height_from_pose else 0.0,
         offsets=offsets,
+        sigmas=_range_sigmas(np.hypot(*offsets.T), layout.floor_sigma, config),
         corners=layout.corners,
     )
 
@@ -78,5 +79,16 @@ def register(view: CastLayout, ch_per_su: float) -> RegisteredLayout:
         camera=camera,
         height=height,
         boundary=height * view.offsets + camera,
+        sigmas=height * view.sigmas,
         corners=view.corners,
     )
+
+
+def _range_sigmas(
+    ranges: FloatArray, stated: FloatArray | None, config: RegistrationConfig
+) -> FloatArray:
+    """Standard deviations of ranges for a camera height of 1, from those of the elevations."""
+    angular = np.deg2rad(np.interp(ranges, config.sigma_ranges_ch, config.sigma_deg))
+    if stated is not None:
+        angular = np.fmax(angular, stated)
+    return np.asarray(np.hypot((1 + ranges**2) * angular, config.scale_bias * ranges))

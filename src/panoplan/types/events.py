@@ -57,6 +57,21 @@ class RoomsJoined:
     gone: str
 
 
+@dataclass(frozen=True)
+class RoomsRegrouped:
+    """Views proved to be of other rooms than first thought.
+
+    Attributes:
+        moved: how many keyframes changed their room.
+        rooms: ids of the rooms that the keyframes looked at are in now.
+        gone: ids of rooms that no keyframe is in any more.
+    """
+
+    moved: int
+    rooms: tuple[str, ...]
+    gone: tuple[str, ...]
+
+
 @dataclass(frozen=True, eq=False)
 class RoomShaped:
     """A room's shape was found (or not), when the camera left it or at the end.
@@ -79,5 +94,6 @@ Event = (
     | RoomOpened
     | KeyframePlaced
     | RoomsJoined
+    | RoomsRegrouped
     | RoomShaped
 )

@@ -91,9 +91,14 @@ class RoomShape:
     Attributes:
         polygon: (N, 2) simple, counter-clockwise; None where none was found.
         failure: the reason, None where there is a polygon.
-        rounds: (N, 2) polygon of each round.
+        rounds: (N, 2) polygon of each round of iSPA.
+        sigmas: (N,) standard deviation across the wall that begins at each corner, NaN where not
+            known; None where the method tells none.
+        holes: open polygons, clockwise, of what is not room inside.
     """
 
     polygon: FloatArray | None
     failure: str | None
     rounds: tuple[FloatArray, ...] = ()
+    sigmas: FloatArray | None = None
+    holes: tuple[FloatArray, ...] = ()

@@ -22,6 +22,7 @@ class CastLayout:
         rise_su: how much higher than the first camera, trajectory units.
         offsets: (W, 2) boundary points relative to the camera for a camera height of 1, walk
             frame; NaN where unknown.
+        sigmas: (W,) standard deviations of the ranges for a camera height of 1.
         corners: (K,) columns of wall corners, or None.
     """
 
@@ -30,6 +31,7 @@ class CastLayout:
     position_su: FloatArray
     rise_su: float
     offsets: FloatArray
+    sigmas: FloatArray
     corners: FloatArray | None
 
 
@@ -43,6 +45,7 @@ class RegisteredLayout:
         camera: (2,) camera.
         height: of this camera above the floor, 1 for the first.
         boundary: (W, 2) boundary points, NaN where unknown.
+        sigmas: (W,) standard deviations of the boundary's ranges.
         corners: (K,) columns of wall corners, or None.
     """
 
@@ -51,4 +54,5 @@ class RegisteredLayout:
     camera: FloatArray
     height: float
     boundary: FloatArray
+    sigmas: FloatArray
     corners: FloatArray | None

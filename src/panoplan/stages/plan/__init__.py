@@ -1,0 +1,1 @@
+"""Past the paper: views grouped into rooms, fused, and turned into one plan."""

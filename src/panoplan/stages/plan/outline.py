@@ -1,0 +1,290 @@
+"""A room's walls: the outline of its floor cut into lines, each fitted to the raw columns."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import cast
+
+import numpy as np
+import shapely
+from contourpy import contour_generator
+from scipy import ndimage
+
+from panoplan.config import FusionConfig, OutlineConfig
+from panoplan.geometry.polygons import signed_area
+from panoplan.geometry.polyline import resampled, straight_pieces
+from panoplan.stages.plan.fusion import Floor
+from panoplan.stages.plan.sight import Sights
+from panoplan.types.arrays import BoolArray, FloatArray, IntArray
+from panoplan.types.room import RoomShape
+
+
+@dataclass(frozen=True, eq=False)
+class WallLine:
+    """A straight wall: points middle + t·along for t in [start, end], the room on its left.
+
+    Attributes:
+        middle: (2,) a point of the line.
+        along: (2,) unit direction.
+        start: where the wall begins.
+        end: where it ends.
+        columns: how many raw columns it was fitted to, 0 where none lies near.
+        sigma: standard deviation across the wall in camera heights, NaN where not fitted.
+    """
+
+    middle: FloatArray
+    along: FloatArray
+    start: float
+    end: float
+    columns: int = 0
+    sigma: float = np.nan
+
+    @property
+    def outward(self) -> FloatArray:
+        """(2,) unit normal away from the room."""
+        return np.array([self.along[1], -self.along[0]])
+
+    @property
+    def ends(self) -> FloatArray:
+        """(2, 2) first and last point."""
+        return self.middle + np.outer([self.start, self.end], self.along)
+
+
+@dataclass(frozen=True, eq=False)
+class _Columns:
+    """Known boundary columns of all views of a room: points, directions, sigmas, views."""
+
+    points: FloatArray
+    rays: FloatArray
+    ranges: FloatArray
+    sigmas: FloatArray
+    view: IntArray
+
+
+def outline(floor: Floor, views: Sights, config: OutlineConfig, fusion: FusionConfig) -> RoomShape:
+    """The straight walls around a floor.
+
+    The zero line of the field is cut into straight pieces; each is fitted to the raw boundary
+    columns near it; corners are where neighbouring lines meet.
+
+    Args:
+        floor: of the room.
+        views: the room's.
+        config: settings.
+        fusion: settings of the field.
+
+    Returns:
+        The polygon, its holes and the standard deviation of each wall; or why there is none.
+    """
+    if floor.mask.sum() * fusion.cell_ch**2 < fusion.min_area_ch2:
+        return RoomShape(None, "its floor is smaller than a room's")
+    columns = _columns(views)
+    pieces = _pieces(floor.mask, floor.field, floor.first_cell, config, fusion)
+    walls = _walls(pieces, columns, config)
+    ring, sigmas = _corners(walls)
+    if not _is_simple(ring):
+        # Where fitted walls cross, the outline of the field stands.
+        ring, sigmas = _corners([_through(piece) for piece in pieces])
+        if not _is_simple(ring):
+            return RoomShape(None, "its walls do not close")
+    holes = []
+    labels, count = ndimage.label(floor.holes)
+    for number in range(1, count + 1):
+        piece = np.asarray(labels == number)
+        if piece.sum() * fusion.cell_ch**2 < fusion.min_hole_ch2:
+            continue
+        around = _pieces(piece, -floor.field, floor.first_cell, config, fusion)
+        inwards = [part[::-1] for part in reversed(around)]
+        hole, _ = _corners(_walls(inwards, columns, config))
+        if _is_simple(hole[::-1]) and shapely.Polygon(ring).contains_properly(
+            shapely.Polygon(hole)
+        ):
+            holes.append(hole)
+    return RoomShape(ring, None, sigmas=sigmas, holes=tuple(holes))
+
+
+def _columns(views: Sights) -> _Columns:
+    points = np.concatenate([view.boundary for view in views.views])
+    sigmas = np.concatenate([view.sigmas for view in views.views])
+    counts = [len(view.boundary) for view in views.views]
+    view = np.repeat(np.arange(len(views)), counts)
+    known = np.isfinite(points[:, 0])
+    points, sigmas, view = points[known], sigmas[known], view[known]
+    rays = points - views.cameras[view]
+    ranges = np.hypot(*rays.T)
+    return _Columns(points, rays / ranges[:, None], ranges, sigmas, view)
+
+
+def _is_simple(ring: FloatArray) -> bool:
+    return len(ring) >= 3 and signed_area(ring) > 0 and shapely.Polygon(ring).is_valid
+
+
+def _pieces(
+    mask: BoolArray,
+    field: FloatArray,
+    first_cell: tuple[int, int],
+    config: OutlineConfig,
+    fusion: FusionConfig,
+) -> list[FloatArray]:
+    """The straight pieces of a mask's outline, counter-clockwise."""
+    ring = (_zero_line(mask, field) + first_cell) * fusion.cell_ch
+    ring = resampled(ring, config.step_ch)
+    return straight_pieces(ring, config.point_sigma_ch, config.corner_cost)
+
+
+def _walls(
+    pieces: Sequence[FloatArray], columns: _Columns, config: OutlineConfig
+) -> list[WallLine]:
+    walls = [_fitted(_through(piece), columns, config) for piece in pieces]
+    merged = _straightened(walls, config)
+    if len(merged) == len(walls):
+        return walls
+    return [_fitted(wall, columns, config) for wall in merged]
+
+
+def _zero_line(mask: BoolArray, field: FloatArray) -> FloatArray:
+    """(N, 2) outer outline of a mask, counter-clockwise, in cells, where the field is zero.
+
+    The field places the line within the cells on the mask's rim; elsewhere the mask rules.
+    """
+    inside = np.maximum(field, _TINY)
+    outside = np.where(
+        ndimage.binary_dilation(mask), np.minimum(field, -_TINY), -np.abs(field) - _TINY
+    )
+    values = np.pad(np.where(mask, inside, outside), 1, constant_values=-1.0)
+    lines = cast(list[FloatArray], contour_generator(z=values.T).lines(0.0))
+    ring = max(lines, key=lambda line: abs(signed_area(line[:-1])) if len(line) > 3 else 0.0)
+    ring = ring[:-1] - 0.5
+    return ring if signed_area(ring) > 0 else ring[::-1]
+
+
+_TINY = 1e-4
+
+
+def _through(piece: FloatArray) -> WallLine:
+    """The line through a piece of outline."""
+    middle = piece.mean(axis=0)
+    _, axes = np.linalg.eigh((piece - middle).T @ (piece - middle))
+    along = axes[:, 1]
+    if along @ (piece[-1] - piece[0]) < 0:
+        along = -along
+    reach = (piece - middle) @ along
+    return WallLine(middle, along, float(reach.min()), float(reach.max()))
+
+
+def _fitted(wall: WallLine, columns: _Columns, config: OutlineConfig) -> WallLine:
+    """The wall moved and turned to the raw columns near it, robustly."""
+    for number in range(config.fit_rounds):
+        step = _fit(wall, columns, config.fit_reach_ch / (1 + number), config)
+        if step is None:
+            break
+        wall = step
+    return wall
+
+
+def _fit(wall: WallLine, columns: _Columns, reach: float, config: OutlineConfig) -> WallLine | None:
+    """One weighted least-squares fit; None where too few columns lie near."""
+    outward = wall.outward
+    relative = columns.points - wall.middle
+    at, off = relative @ wall.along, relative @ outward
+    margin = min(_CORNER_MARGIN_CH, _CORNER_MARGIN_SHARE * (wall.end - wall.start))
+    facing = columns.rays @ outward
+    chosen = np.flatnonzero(
+        (np.abs(off) < reach)
+        & (at > wall.start + margin)
+        & (at < wall.end - margin)
+        & (facing > np.sin(np.deg2rad(config.grazing_deg)))
+    )
+    if len(chosen) < _FEWEST_COLUMNS:
+        return None
+    at, off, view = at[chosen], off[chosen], columns.view[chosen]
+    across = np.maximum(columns.sigmas[chosen] * facing[chosen], _FINEST_CH)
+    view = np.unique(view, return_inverse=True)[1]
+    count = np.bincount(view)
+    # Columns of one view err together: a view counts once, however many columns it has.
+    weight = 1.0 / (across**2 * count[view] * (1.0 + (off / (2.0 * across)) ** 2))
+    total = weight.sum()
+    mean_at, mean_off = (weight @ at) / total, (weight @ off) / total
+    spread = weight @ (at - mean_at) ** 2
+    turn = (weight @ ((at - mean_at) * (off - mean_off))) / (
+        spread + 1.0 / np.deg2rad(config.turn_sigma_deg) ** 2
+    )
+    along = wall.along + turn * outward
+    along = along / np.hypot(*along)
+    middle = wall.middle + outward * (mean_off - turn * mean_at)
+    independent = np.maximum(1.0, count / config.correlation_columns)
+    information = np.bincount(view, weight) * independent
+    return replace(
+        wall,
+        middle=middle,
+        along=along,
+        columns=len(chosen),
+        sigma=float(1.0 / np.sqrt(information.sum())),
+    )
+
+
+_CORNER_MARGIN_CH, _CORNER_MARGIN_SHARE = 0.07, 0.15
+"""Columns this near to a wall's ends may be of its neighbours."""
+_FEWEST_COLUMNS = 8
+_FINEST_CH = 0.004
+
+
+def _straightened(walls: Sequence[WallLine], config: OutlineConfig) -> list[WallLine]:
+    """Joins neighbours that lie on one line."""
+    left = list(walls)
+    index = 0
+    while len(left) > 3 and index < len(left):
+        one, other = left[index], left[(index + 1) % len(left)]
+        if not _one_line(one, other, config):
+            index += 1
+            continue
+        longer = max(one, other, key=lambda w: (w.end - w.start) * max(1, w.columns))
+        reach = (np.concatenate([one.ends, other.ends]) - longer.middle) @ longer.along
+        joined = replace(longer, start=float(reach.min()), end=float(reach.max()))
+        if index + 1 < len(left):
+            left[index : index + 2] = [joined]
+        else:
+            left = [joined, *left[1:-1]]
+            index = 0
+    return left
+
+
+def _one_line(one: WallLine, other: WallLine, config: OutlineConfig) -> bool:
+    if one.along @ other.along < np.cos(np.deg2rad(config.straight_deg)):
+        return False
+    step = (other.ends[0] - one.ends[1]) @ one.outward
+    return bool(
+        abs(step) < config.fit_reach_ch / 2
+        and abs((other.ends[0] - one.middle) @ one.outward) < config.fit_reach_ch / 2
+    )
+
+
+def _corners(walls: Sequence[WallLine]) -> tuple[FloatArray, FloatArray]:
+    """Where neighbouring walls meet, and the sigma of the wall that begins at each corner."""
+    corners: list[FloatArray] = []
+    sigmas: list[float] = []
+    for index, wall in enumerate(walls):
+        before = walls[index - 1]
+        ends = np.stack([before.ends[1], wall.ends[0]])
+        normals = np.stack([before.outward, wall.outward])
+        if abs(before.along @ wall.outward) > _MEETING_SINE:
+            offsets = np.array([before.outward @ before.middle, wall.outward @ wall.middle])
+            meeting: FloatArray = np.linalg.solve(normals, offsets)
+            if np.hypot(*(ends - meeting).T).min() < _MEETING_CH:
+                corners.append(meeting)
+                sigmas.append(wall.sigma)
+                continue
+        if np.hypot(*(ends[1] - ends[0])) < _STEP_CH:
+            corners.append(ends.mean(axis=0))
+            sigmas.append(wall.sigma)
+        else:
+            # A step between two nearly parallel walls is a wall itself.
+            corners += [ends[0], ends[1]]
+            sigmas += [np.nan, wall.sigma]
+    return np.array(corners).reshape(-1, 2), np.array(sigmas)
+
+
+_MEETING_SINE = 0.2
+_MEETING_CH = 0.25
+_STEP_CH = 0.07

@@ -1,0 +1,66 @@
+"""A registered layout as a star-shaped region."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from panoplan.geometry.polar import range_profile
+from panoplan.types.arrays import FloatArray
+from panoplan.types.view import RegisteredLayout
+
+_BINS = 1024
+_MAX_GAP_RAD = np.deg2rad(2.0)
+
+
+@dataclass(frozen=True, eq=False)
+class Sights:
+    """Several views, array by array.
+
+    Attributes:
+        cameras: (V, 2) positions, walk frame, camera heights.
+        profiles: (V, B) range at evenly spaced headings, NaN where unknown.
+        sigmas: (V, B) standard deviation of each range.
+        views: the layouts themselves.
+    """
+
+    cameras: FloatArray
+    profiles: FloatArray
+    sigmas: FloatArray
+    views: tuple[RegisteredLayout, ...]
+
+    def __len__(self) -> int:
+        """Number of views."""
+        return len(self.views)
+
+    def pick(self, chosen: Sequence[int]) -> Sights:
+        """Some of the views, in the order given."""
+        at = np.asarray(chosen, dtype=np.int64)
+        views = tuple(self.views[k] for k in at)
+        return Sights(self.cameras[at], self.profiles[at], self.sigmas[at], views)
+
+
+def sights(views: Sequence[RegisteredLayout]) -> Sights:
+    """The regions that views see.
+
+    Args:
+        views: at least one.
+
+    Returns:
+        The regions, in the same order.
+    """
+    profiles = np.empty((len(views), _BINS))
+    sigmas = np.empty((len(views), _BINS))
+    at = 2 * np.pi * (np.arange(_BINS) + 0.5) / _BINS - np.pi
+    for k, view in enumerate(views):
+        offsets = view.boundary - view.camera
+        profiles[k] = range_profile(offsets, _BINS, _MAX_GAP_RAD)
+        known = np.flatnonzero(np.isfinite(offsets[:, 0]))
+        heading = np.arctan2(offsets[known, 0], offsets[known, 1])
+        order = np.argsort(heading, kind="stable")
+        after = np.searchsorted(heading[order], at) % max(1, len(known))
+        sigmas[k] = view.sigmas[known[order[after]]] if len(known) else np.nan
+    cameras = np.array([view.camera for view in views]).reshape(-1, 2)
+    return Sights(cameras, profiles, sigmas, tuple(views))
