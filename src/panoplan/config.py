@@ -775,6 +775,179 @@ class OutlineConfig:
 
 
 @dataclass(frozen=True)
+class LevelsConfig:
+    """Storeys, told apart by the height of the cameras; goes past the paper."""
+
+    step_ch: float = _setting(
+        1 / 3,
+        "A change of the camera's height by more than this may start a level: half a metre at a "
+        "usual camera height.",
+        unit="camera heights",
+        low=0.05,
+        high=100.0,
+    )
+    keyframes: int = _setting(
+        4,
+        "It is lasting when so many keyframes in a row stay within half a step of one another; "
+        "until then they wait. 0: all is one level.",
+        low=0,
+        high=1000,
+    )
+
+
+@dataclass(frozen=True)
+class PartitionConfig:
+    """One plan of all rooms; goes past the paper."""
+
+    parallel_deg: float = _setting(
+        8.0,
+        "Walls of two rooms within this angle may be the faces of one.",
+        unit="deg",
+        low=0.1,
+        high=45.0,
+    )
+    min_facing_ch: float = _setting(
+        0.15,
+        "Walls that face each other over less than this share nothing.",
+        unit="camera heights",
+        low=0.0,
+        high=10.0,
+    )
+    max_overlap_ch: float = _setting(
+        0.25,
+        "Faces that are crossed by more than this are not of one wall.",
+        unit="camera heights",
+        low=0.0,
+        high=2.0,
+    )
+    max_thickness_ch: float = _setting(
+        0.3,
+        "Faces farther apart than this are not of one wall: 45 cm.",
+        unit="camera heights",
+        low=0.0,
+        high=2.0,
+    )
+    min_thickness_ch: float = _setting(
+        0.035,
+        "No wall is thinner: 5 cm. Faces closer than this are moved apart.",
+        unit="camera heights",
+        low=0.0,
+        high=1.0,
+    )
+    thickness_ch: float = _setting(
+        0.08,
+        "Thickness assumed where no other wall's was measured: 12 cm, a usual inner wall.",
+        unit="camera heights",
+        low=0.0,
+        high=1.0,
+    )
+    thickness_sigma_ch: float = _setting(
+        0.02,
+        "Standard deviation of assumed thicknesses.",
+        unit="camera heights",
+        low=0.001,
+        high=1.0,
+    )
+    unfitted_sigma_ch: float = _setting(
+        0.1,
+        "Standard deviation of a wall that no raw column lies on, as at an opening.",
+        unit="camera heights",
+        low=0.001,
+        high=10.0,
+    )
+    min_area_ch2: float = _setting(
+        0.1,
+        "A room that loses all but this to others is none: a quarter of a square metre.",
+        unit="square camera heights",
+        low=0.0,
+        high=100.0,
+    )
+
+
+@dataclass(frozen=True)
+class AperturesConfig:
+    """Doors, openings and windows; goes past the paper."""
+
+    min_width_ch: float = _setting(
+        0.15,
+        "Nothing narrower is told: 23 cm.",
+        unit="camera heights",
+        low=0.0,
+        high=2.0,
+    )
+    door_width_ch: float = _setting(
+        0.53,
+        "Width assumed of a door of which only the place is known: 80 cm.",
+        unit="camera heights",
+        low=0.1,
+        high=2.0,
+    )
+    widest_door_ch: float = _setting(
+        0.8,
+        "Where nobody says what a passage is, a wider one is an opening: 1.2 m.",
+        unit="camera heights",
+        low=0.1,
+        high=10.0,
+    )
+    min_part: float = _setting(
+        0.3,
+        "Of what a view sees around a corner, parts smaller than this are left out.",
+        low=0.0,
+        high=1.0,
+    )
+    nearest_ch: float = _setting(
+        0.15,
+        "A camera as near as this to a wall, as in a doorway, says nothing of it.",
+        unit="camera heights",
+        low=0.0,
+        high=2.0,
+    )
+    farthest_ch: float = _setting(
+        2.7,
+        "A view need not show what is farther away: 4 m.",
+        unit="camera heights",
+        low=0.5,
+        high=100.0,
+    )
+    leak_ch: float = _setting(
+        0.2,
+        "A boundary that lies so far behind a wall, and `leak_share` of its range, leaks: 30 cm.",
+        unit="camera heights",
+        low=0.01,
+        high=10.0,
+    )
+    leak_share: float = _setting(
+        0.15, "The same, relative to the range: networks err more far away.", low=0.0, high=10.0
+    )
+    longest_step_ch: float = _setting(
+        1.0,
+        "Between cameras farther apart than this, as of stills, nobody walked straight.",
+        unit="camera heights",
+        low=0.05,
+        high=100.0,
+    )
+    same_wall_ch: float = _setting(
+        0.35,
+        "Sightings farther apart than this across the wall are not of one thing.",
+        unit="camera heights",
+        low=0.0,
+        high=2.0,
+    )
+    same_share: float = _setting(
+        0.3, "Sightings of one thing have at least this share of it in common.", low=0.0, high=1.0
+    )
+    min_support: float = _setting(
+        0.4, "Share of the views that look at a door or window and show it.", low=0.0, high=1.0
+    )
+    min_support_opening: float = _setting(
+        0.5,
+        "The same of openings, which real networks make up more often.",
+        low=0.0,
+        high=1.0,
+    )
+
+
+@dataclass(frozen=True)
 class Config:
     """All settings of a run."""
 
@@ -786,9 +959,12 @@ class Config:
     planes: PlanesConfig = field(default_factory=PlanesConfig)
     orientation: OrientationConfig = field(default_factory=OrientationConfig)
     shape: ShapeConfig = field(default_factory=ShapeConfig)
+    levels: LevelsConfig = field(default_factory=LevelsConfig)
     grouping: GroupingConfig = field(default_factory=GroupingConfig)
     fusion: FusionConfig = field(default_factory=FusionConfig)
     outline: OutlineConfig = field(default_factory=OutlineConfig)
+    partition: PartitionConfig = field(default_factory=PartitionConfig)
+    apertures: AperturesConfig = field(default_factory=AperturesConfig)
 
     def __post_init__(self) -> None:
         """Checks every field's type and range."""

@@ -16,6 +16,7 @@ from panoplan.exporters.drawing import (
 )
 from panoplan.exporters.labels import printable
 from panoplan.exporters.layers import Layer
+from panoplan.types.plan import Aperture
 
 
 def layers(figure):
@@ -48,7 +49,7 @@ def test_every_room_corner_and_camera_is_drawn():
 def test_nothing_is_cropped(size):
     figure = Figure(figsize=size)
     axes = figure.add_axes((0, 0, 1, 1))
-    made = plan((*FLAT, None), doors=(np.array([[-1.0, 0.0], [9.0, 6.0]]),))
+    made = plan((*FLAT, None), doors=(Aperture("door_01", np.array([[-1.0, 0.0], [9.0, 6.0]])),))
     draw_plan(axes, made, title="A title")
     canvas = FigureCanvasAgg(figure)
     canvas.draw()

@@ -9,6 +9,7 @@ from tests.metrics.plans import FLAT, LEFT, plan, square
 import panoplan.formats
 from panoplan.errors import InputError
 from panoplan.formats.plan_json import plan_to_dict, plan_to_text, read_plan, write_plan
+from panoplan.types.plan import Aperture
 
 
 def assert_equal(one, other):
@@ -166,8 +167,8 @@ def test_numbers_beyond_all_bounds_are_refused(tmp_path):
 
 
 def test_a_plan_that_is_not_finite_is_not_written(tmp_path):
-    broken = plan(doors=(np.array([[0.0, np.nan], [1.0, 1.0]]),))
-    with pytest.raises(InputError, match=r"\$\.doors\[0\]\[0\]\[1\]"):
+    broken = plan(doors=(Aperture("door_01", np.array([[0.0, np.nan], [1.0, 1.0]])),))
+    with pytest.raises(InputError, match=r"\$\.doors\[0\]\.a\[1\]"):
         write_plan(tmp_path / "plan.json", broken)
     assert not list(tmp_path.iterdir())
 

@@ -2,7 +2,16 @@
 
 import numpy as np
 
-from panoplan.types.plan import FloorPlan, PlanPose, Room, ScaleEstimate, Skipped, Wall
+from panoplan.types.plan import (
+    Aperture,
+    FloorPlan,
+    PlanPose,
+    Room,
+    ScaleEstimate,
+    SharedWall,
+    Skipped,
+    Wall,
+)
 from panoplan.types.pose import Trajectory
 from panoplan.types.truth import GroundTruth, TruePlan, TrueRoom
 
@@ -71,9 +80,18 @@ def plan(rooms=FLAT, cameras=CAMERAS, *, unit="m", names=None, **fields):
         ),
         "camera_height_m": 1.5 if unit == "m" else None,
         "skipped": (Skipped("kf9", "wall", "seen edge-on", 3),),
-        "doors": (np.array([[4.0, 1.0], [4.0, 1.9]]),),
-        "openings": (np.array([[1.0, 3.0], [2.0, 3.0]]),),
-        "windows": (np.array([[0.0, 1.0], [0.0, 2.0]]),),
+        "shared_walls": (SharedWall("shared_01", ("wall_02", "wall_03"), 0.12, True, True),),
+        "doors": (
+            Aperture(
+                "door_01",
+                np.array([[4.0, 1.0], [4.0, 1.9]]),
+                ("room_01", "room_02"),
+                ("wall_02", "wall_03"),
+                ("seen", "walked"),
+            ),
+        ),
+        "openings": (Aperture("opening_01", np.array([[1.0, 3.0], [2.0, 3.0]])),),
+        "windows": (Aperture("window_01", np.array([[0.0, 1.0], [0.0, 2.0]])),),
         "settings": {"scale": {"b": (1, 2), "a": "x"}},
         "version": "1.2.3",
     }

@@ -39,6 +39,7 @@ def round_view(distance):
         range_m=ranges,
         closed_range_m=ranges,
         surface=np.zeros(WIDTH, dtype=np.int8),
+        closed_surface=np.zeros(WIDTH, dtype=np.int8),
         passage=np.full(WIDTH, -1),
         leaked=np.zeros(WIDTH, dtype=bool),
         corners=np.empty(0),

@@ -2,18 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from panoplan import __version__
 from panoplan.config import Config, as_dict
-from panoplan.estimator.state import RoomState, State, room_id
+from panoplan.estimator.state import PlacedCamera, RoomState, State, room_id
 from panoplan.geometry.angles import line_angle
 from panoplan.stages import orientation
 from panoplan.types.arrays import FloatArray
-from panoplan.types.plan import FloorPlan, PlanPose, Room, ScaleEstimate, Unit, Wall
+from panoplan.types.plan import (
+    Aperture,
+    ApertureKind,
+    FloorPlan,
+    PlanPose,
+    Room,
+    ScaleEstimate,
+    SharedWall,
+    Unit,
+    Wall,
+)
 from panoplan.types.room import RoomShape
 
 
@@ -48,11 +58,23 @@ def assemble(state: State, config: Config) -> FloorPlan:
     def to_plan(points: FloatArray) -> FloatArray:
         return np.asarray(length * (points @ world_from_walk.T + origin))
 
-    rooms, walls = [], 0
+    members: dict[int, list[PlacedCamera]] = {room.number: [] for room in state.rooms}
+    for camera in state.cameras:
+        if camera.room is not None:
+            members[camera.room].append(camera)
+    composed = {
+        number: shape
+        for level in state.compositions
+        for number, shape in zip(level.numbers, level.shapes, strict=True)
+    }
+    rooms: dict[int, Room] = {}
+    walls = 0
     for room in state.rooms:
-        made = _room(room, state, config, to_plan, length, walls)
+        shaped = replace(room, shape=composed.get(room.number, room.shape))
+        made = _room(shaped, members[room.number], config, to_plan, length, walls)
         walls += len(made.walls)
-        rooms.append(made)
+        rooms[room.number] = made
+    shared, found = _joints(state, rooms, composed, to_plan, length)
     trajectory = tuple(
         PlanPose(
             camera.keyframe,
@@ -67,12 +89,66 @@ def assemble(state: State, config: Config) -> FloorPlan:
         level_rotation=np.eye(3),
         scale=scale,
         camera_height_m=length * state.median_height if unit == "m" else None,
-        rooms=tuple(rooms),
+        rooms=tuple(rooms.values()),
         trajectory=trajectory,
         skipped=state.skipped,
+        shared_walls=shared,
+        doors=found["door"],
+        openings=found["opening"],
+        windows=found["window"],
         settings=as_dict(config),
         version=__version__,
     )
+
+
+def _joints(
+    state: State,
+    rooms: dict[int, Room],
+    composed: dict[int, RoomShape],
+    to_plan: Callable[[FloatArray], FloatArray],
+    length: float,
+) -> tuple[tuple[SharedWall, ...], dict[ApertureKind, tuple[Aperture, ...]]]:
+    """Shared walls, and doors, openings and windows; without those of rooms that are gone."""
+
+    def wall_id(number: int, wall: int) -> str:
+        polygon = composed[number].polygon
+        assert polygon is not None
+        own = rooms[number].walls
+        return own[(wall - _first_corner(polygon)) % len(own)].id
+
+    shared: list[SharedWall] = []
+    found: dict[ApertureKind, list[Aperture]] = {"door": [], "opening": [], "window": []}
+    for level in state.compositions:
+        numbers = level.numbers
+        for face in level.facings:
+            of = [numbers[k] for k in face.rooms]
+            if not all(number in rooms for number in of):
+                continue
+            one, other = (wall_id(n, w) for n, w in zip(of, face.walls, strict=True))
+            shared.append(
+                SharedWall(
+                    f"shared_{len(shared) + 1:02d}",
+                    (one, other),
+                    length * face.thickness,
+                    face.measured,
+                    face.solid,
+                )
+            )
+        for item in level.apertures:
+            there = [(numbers[k], wall) for k, wall in item.walls]
+            if not all(number in rooms for number, _ in there):
+                continue
+            own = found[item.kind]
+            own.append(
+                Aperture(
+                    f"{item.kind}_{len(own) + 1:02d}",
+                    to_plan(item.segment),
+                    tuple(rooms[number].id for number, _ in there),
+                    tuple(wall_id(number, wall) for number, wall in there),
+                    item.sources,
+                )
+            )
+    return tuple(shared), {kind: tuple(items) for kind, items in found.items()}
 
 
 def _first_corner(polygon: FloatArray) -> int:
@@ -82,7 +158,7 @@ def _first_corner(polygon: FloatArray) -> int:
 
 def _room(
     room: RoomState,
-    state: State,
+    cameras: Sequence[PlacedCamera],
     config: Config,
     to_plan: Callable[[FloatArray], FloatArray],
     length: float,
@@ -94,7 +170,9 @@ def _room(
         name=f"Room {room.number}",
         polygon=None,
         failure=shape.failure,
-        keyframes=tuple(c.keyframe for c in state.cameras if c.room == room.number),
+        keyframes=tuple(camera.keyframe for camera in cameras),
+        ceiling_height=_ceiling(cameras, length),
+        level=room.level,
     )
     directions, flagged = orientation.accepted(room.orientations, config.orientation)
     if directions:
@@ -119,3 +197,9 @@ def _room(
     )
     holes = tuple(to_plan(hole) for hole in shape.holes)
     return replace(made, polygon=ring, walls=walls, holes=holes)
+
+
+def _ceiling(cameras: Sequence[PlacedCamera], length: float) -> float | None:
+    """The median over the room's views that tell it, in plan units."""
+    told = [camera.ceiling for camera in cameras if np.isfinite(camera.ceiling)]
+    return length * float(np.median(told)) if told else None

@@ -9,9 +9,11 @@ from dataclasses import replace
 import numpy as np
 
 from panoplan.config import Config
-from panoplan.estimator.state import RoomState, State, room_id
+from panoplan.estimator.state import Composition, RoomState, State, room_id
 from panoplan.stages import rooms
+from panoplan.stages.plan.apertures import apertures, stretches
 from panoplan.stages.plan.floorplan import PlannedRoom, plan_rooms
+from panoplan.stages.plan.partition import partition
 from panoplan.types.events import Event, RoomShaped, RoomsRegrouped
 from panoplan.types.room import RoomShape
 from panoplan.types.view import RegisteredLayout
@@ -32,7 +34,8 @@ def settle_around(state: State, index: int, config: Config) -> tuple[State, tupl
     near = [
         k
         for k, other in enumerate(state.rooms)
-        if other is left or rooms.overlap(left.density, other.density) > _TOUCHING
+        if other is left
+        or (other.level == left.level and rooms.overlap(left.density, other.density) > _TOUCHING)
     ]
     return settle(state, near, config)
 
@@ -49,7 +52,7 @@ def settle(state: State, chosen: Sequence[int], config: Config) -> tuple[State, 
 
     Args:
         state: what is known.
-        chosen: indices of the rooms in `state.rooms`.
+        chosen: indices of the rooms in `state.rooms`, all of one level.
         config: settings.
 
     Returns:
@@ -64,16 +67,17 @@ def settle(state: State, chosen: Sequence[int], config: Config) -> tuple[State, 
     used = max(room.number for room in state.rooms)
     numbers = _numbers([[before[k] for k in group] for group in members], used)
     old = {state.rooms[k].number: state.rooms[k] for k in chosen}
+    level = state.rooms[chosen[0]].level
     made = []
     for room, number in zip(planned, numbers, strict=True):
         own = tuple(views[k] for k in sorted(room.members))
-        made.append(_room(room, number, own, old.get(number), config))
+        made.append(_room(room, number, level, own, old.get(number), config))
     after = {view.index: room.number for room in made for view in room.views}
     current = None if state.current is None else state.rooms[state.current].number
     if current in old:
         # The camera goes on in the room of its last keyframe.
         current = after[max(k for k, number in before.items() if number == current)]
-    kept = [room for k, room in enumerate(state.rooms) if k not in set(chosen)]
+    kept = [room for k, room in enumerate(state.rooms) if k not in chosen]
     together = tuple(sorted([*kept, *made], key=lambda room: room.number))
     changed = replace(
         state,
@@ -84,7 +88,25 @@ def settle(state: State, chosen: Sequence[int], config: Config) -> tuple[State, 
             for k, camera in enumerate(state.cameras)
         ),
     )
+    changed = replace(changed, compositions=_composed(changed, config))
     return changed, _told(before, after, made, old)
+
+
+def _composed(state: State, config: Config) -> tuple[Composition, ...]:
+    """The plan of each level."""
+    out = []
+    for level in range(len(state.levels)):
+        there = [room for room in state.rooms if room.level == level and room.shape is not None]
+        shapes, facings = partition([r.shape for r in there if r.shape], config.partition)
+        found = apertures(
+            shapes,
+            [room.stretches for room in there],
+            [(view.index, view.camera) for room in there for view in room.views],
+            facings,
+            config.apertures,
+        )
+        out.append(Composition(tuple(room.number for room in there), shapes, facings, found))
+    return tuple(out)
 
 
 def _numbers(groups: Sequence[Sequence[int]], used: int) -> list[int]:
@@ -109,13 +131,15 @@ def _numbers(groups: Sequence[Sequence[int]], used: int) -> list[int]:
 def _room(
     planned: PlannedRoom,
     number: int,
+    level: int,
     views: tuple[RegisteredLayout, ...],
     old: RoomState | None,
     config: Config,
 ) -> RoomState:
+    found = stretches(planned.shape, views, config.apertures)
     same = old is not None and [v.index for v in old.views] == [v.index for v in views]
     if old is not None and same:
-        return replace(old, shape=planned.shape, stale=False)
+        return replace(old, shape=planned.shape, stretches=found, stale=False)
     density = rooms.clipped_patch(views[0], config.rooms).density
     for view in views[1:]:
         density = rooms.add(density, rooms.clipped_patch(view, config.rooms).density, config.rooms)
@@ -125,7 +149,9 @@ def _room(
         (),
         (),
         views=views,
+        level=level,
         shape=planned.shape,
+        stretches=found,
         stale=False,
         away=-1 if old is None else old.away,
     )

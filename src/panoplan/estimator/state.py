@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Literal
 
+from panoplan.stages.plan.apertures import WallAperture
+from panoplan.stages.plan.partition import Facing
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import ScaleEstimate, Skipped
-from panoplan.types.room import Orientation, RoomDensity, RoomShape, WallPiece
+from panoplan.types.room import Orientation, RoomDensity, RoomShape, WallPiece, WallStretch
 from panoplan.types.view import CastLayout, RegisteredLayout
 
 
@@ -47,12 +50,21 @@ class WalkFrame:
 
 @dataclass(frozen=True, eq=False)
 class PlacedCamera:
-    """A keyframe of the walk: position (2,) in trajectory units, heading in the world, room."""
+    """A keyframe of the walk.
+
+    Attributes:
+        keyframe: id.
+        position_su: (2,) walk frame, trajectory units.
+        heading: in the world.
+        room: number of its room, or None.
+        ceiling: its height above the floor in camera heights, NaN where unknown.
+    """
 
     keyframe: str
     position_su: FloatArray
     heading: float
     room: int | None
+    ceiling: float = math.nan
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,7 +77,9 @@ class RoomState:
         walls: accepted pieces.
         orientations: wall directions.
         views: registered layouts, in the order of the walk; none where iSPA makes the shapes.
+        level: storey that it is on.
         shape: as last computed, or None.
+        stretches: of its walls where its views show something.
         stale: whether evidence came since then.
         away: keyframes in a row assigned elsewhere; −1 once the room has been left.
     """
@@ -75,9 +89,28 @@ class RoomState:
     walls: tuple[WallPiece, ...]
     orientations: tuple[Orientation, ...]
     views: tuple[RegisteredLayout, ...] = ()
+    level: int = 0
     shape: RoomShape | None = None
+    stretches: tuple[WallStretch, ...] = ()
     stale: bool = True
     away: int = 0
+
+
+@dataclass(frozen=True, eq=False)
+class Composition:
+    """The rooms of one level as one plan.
+
+    Attributes:
+        numbers: of its rooms.
+        shapes: their outlines, disjoint, in the same order.
+        facings: walls that they share, by place in that order.
+        apertures: doors, openings and windows, by place in that order.
+    """
+
+    numbers: tuple[int, ...]
+    shapes: tuple[RoomShape, ...]
+    facings: tuple[Facing, ...]
+    apertures: tuple[WallAperture, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,9 +125,14 @@ class State:
         estimates: scales of the warm-up so far, for the test whether they have settled.
         next_estimate: number of waiting layouts at which the next estimate is due.
         scale: frozen scale; None while keyframes wait.
+        levels: how much higher each storey's floor is than that of the first, trajectory units.
+        level: storey that the camera is on.
+        cruise_su: how much higher than at the level's start the camera lately was.
+        climbing: layouts that wait until their level is known.
         median_height: of the warm-up's cameras, in heights of the first.
         rooms: by number.
         current: index into `rooms` of the room last assigned.
+        compositions: the plan of each level as last settled; empty where iSPA makes the shapes.
         cameras: every keyframe fed, in order.
         skipped: what was left out.
     """
@@ -106,8 +144,13 @@ class State:
     estimates: tuple[float, ...] = ()
     next_estimate: int = 0
     scale: ScaleEstimate | None = None
+    levels: tuple[float, ...] = (0.0,)
+    level: int = 0
+    cruise_su: float = 0.0
+    climbing: tuple[CastLayout, ...] = ()
     median_height: float = 1.0
     rooms: tuple[RoomState, ...] = ()
     current: int | None = None
+    compositions: tuple[Composition, ...] = ()
     cameras: tuple[PlacedCamera, ...] = ()
     skipped: tuple[Skipped, ...] = ()

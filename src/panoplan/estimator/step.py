@@ -20,6 +20,7 @@ from panoplan.types.events import (
     KeyframePlaced,
     KeyframeSkipped,
     KeyframeWaiting,
+    LevelReached,
     RoomOpened,
     RoomShaped,
     RoomsJoined,
@@ -67,7 +68,7 @@ def step(state: State, keyframe: Keyframe, config: Config) -> tuple[State, tuple
         state = replace(state, skipped=(*state.skipped, skipped))
         return state, (KeyframeSkipped(keyframe.id, reason),)
     if state.scale is not None:
-        return _place(state, view, config)
+        return _on_level(state, view, config)
     state = replace(state, waiting=(*state.waiting, view))
     waiting: Event = KeyframeWaiting(keyframe.id, len(state.waiting))
     state, frozen = _warm_up(state, config)
@@ -77,15 +78,22 @@ def step(state: State, keyframe: Keyframe, config: Config) -> tuple[State, tuple
 def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
     """Ends the walk: freezes the scale if it is not, and shapes every room that needs it.
 
-    The walk may still go on afterwards.
+    Layouts that still wait for their level are of a new one where they agree. The walk may still
+    go on afterwards.
     """
     events: list[Event] = []
     if state.scale is None and state.waiting:
         state, told = _freeze(state, _estimate(state, config), config)
         events += told
+    if state.climbing:
+        state, told = _arrive(state, config)
+        events += told
     if config.shape.method == "fusion":
-        state, settled = settle(state, range(len(state.rooms)), config)
-        return state, (*events, *settled)
+        for level in range(len(state.levels)):
+            there = [k for k, room in enumerate(state.rooms) if room.level == level]
+            state, told = settle(state, there, config)
+            events += told
+        return state, tuple(events)
     state, joined = _absorb(state, config)
     events += joined
     for index in range(len(state.rooms)):
@@ -132,34 +140,114 @@ def _estimate(state: State, config: Config) -> ScaleEstimate:
     walk = state.walk
     if walk.trajectory_unit == "m" and walk.camera_height_m:
         # The height given is the median camera's; the unit of length is the first one's.
-        rise_m = float(np.median([view.rise_su for view in state.waiting]))
+        per_m = 1.0 / walk.camera_height_m
+        rise_m = float(np.median([v.rise_su for v in _first_level(state, per_m, config)]))
         first_m = max(walk.camera_height_m - rise_m, walk.camera_height_m / 10)
         return ScaleEstimate(1.0 / first_m, "given", keyframes_used=len(state.waiting))
     if len(state.waiting) < 2:
         return ScaleEstimate(None, "unknown", converged=False, keyframes_used=len(state.waiting))
-    return scale.recover_scale(state.waiting, config.scale)
+    estimate = scale.recover_scale(state.waiting, config.scale)
+    there = _first_level(state, estimate.ch_per_su or 0.0, config)
+    if len(there) < 2 or len(there) == len(state.waiting):
+        return estimate
+    # Layouts of two storeys lie on top of one another and agree by chance only.
+    return scale.recover_scale(there, config.scale)
+
+
+def _first_level(state: State, ch_per_su: float, config: Config) -> tuple[CastLayout, ...]:
+    """The waiting layouts whose cameras are as high as the walk's first ones."""
+    if config.levels.keyframes == 0:
+        return state.waiting
+    rises = np.array([view.rise_su for view in state.waiting])
+    first = float(np.median(rises[: config.levels.keyframes]))
+    near = ch_per_su * np.abs(rises - first) <= config.levels.step_ch
+    return tuple(view for view, there in zip(state.waiting, near, strict=True) if there)
 
 
 def _freeze(
     state: State, estimate: ScaleEstimate, config: Config
 ) -> tuple[State, tuple[Event, ...]]:
     waiting = state.waiting
+    there = _first_level(state, estimate.ch_per_su or 0.0, config)
     if estimate.method == "entropy" and estimate.ch_per_su is not None:
-        sigma = scale.scale_sigma(waiting, estimate.ch_per_su, config.scale)
+        sigma = scale.scale_sigma(there, estimate.ch_per_su, config.scale)
         estimate = replace(estimate, sigma=sigma)
-    rises = [view.rise_su for view in waiting]
+    rises = [view.rise_su for view in there]
     median_height = 1.0 + (estimate.ch_per_su or 0.0) * float(np.median(rises))
     state = replace(state, scale=estimate, median_height=median_height, waiting=())
     events: list[Event] = [ScaleFrozen(estimate)]
     for view in waiting:
-        state, told = _place(state, view, config)
+        state, told = _on_level(state, view, config)
         events += told
+    return state, tuple(events)
+
+
+def _on_level(state: State, view: CastLayout, config: Config) -> tuple[State, tuple[Event, ...]]:
+    """Places a layout on the camera's level, or keeps it until it is known on which it is.
+
+    A height that drifts slowly over the walk starts no level.
+    """
+    assert state.scale is not None
+    ch_per_su, levels = state.scale.ch_per_su or 0.0, config.levels
+    higher = ch_per_su * (view.rise_su - state.levels[state.level] - state.cruise_su)
+    if levels.keyframes == 0 or (abs(higher) <= levels.step_ch and not state.climbing):
+        lag = view.rise_su - state.levels[state.level] - state.cruise_su
+        state = replace(state, cruise_su=state.cruise_su + _FOLLOWING * lag)
+        return _place(state, view, config)
+    state = replace(state, climbing=(*state.climbing, view))
+    if abs(higher) <= levels.step_ch:
+        # Back where it was: the camera was only held higher or lower for a while.
+        return _arrive(state, config)
+    recent = state.climbing[-levels.keyframes :]
+    rises = ch_per_su * np.array([v.rise_su for v in recent])
+    if len(recent) < levels.keyframes or np.ptp(rises) > levels.step_ch / 2:
+        return state, (KeyframeWaiting(view.keyframe, len(state.climbing)),)
+    return _arrive(state, config)
+
+
+_FOLLOWING = 0.1
+"""What counts as the camera's usual height follows the last ten keyframes."""
+
+
+def _arrive(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
+    """Places the layouts that waited for their level, where the last ones are.
+
+    A single layout makes no level: at the end of a walk it is of the level before.
+    """
+    assert state.scale is not None
+    ch_per_su, climbing = state.scale.ch_per_su or 0.0, state.climbing
+    state = replace(state, climbing=())
+    events: list[Event] = []
+    last = climbing[-max(1, config.levels.keyframes) :]
+    rise = float(np.median([view.rise_su for view in last]))
+    away = [ch_per_su * abs(rise - base) for base in state.levels]
+    level = int(np.argmin(away))
+    if len(last) == 1:
+        level = state.level
+    elif away[level] > config.levels.step_ch:
+        level = len(state.levels)
+        state = replace(state, levels=(*state.levels, rise))
+    changed = level != state.level
+    if changed:
+        state = replace(state, level=level, cruise_su=0.0, current=None)
+        events.append(LevelReached(climbing[-1].keyframe, level))
+    for view in climbing:
+        near = ch_per_su * abs(view.rise_su - state.levels[level]) <= config.levels.step_ch
+        if near or not changed:
+            state, told = _place(state, view, config)
+            events += told
+            continue
+        reason = "between two levels, as on stairs"
+        skipped = Skipped(view.keyframe, "keyframe", reason)
+        state = replace(state, skipped=(*state.skipped, skipped))
+        events.append(KeyframeSkipped(view.keyframe, reason))
     return state, tuple(events)
 
 
 def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple[Event, ...]]:
     assert state.scale is not None
-    layout = register(view, state.scale.ch_per_su or 0.0)
+    above = replace(view, rise_su=view.rise_su - state.levels[state.level])
+    layout = register(above, state.scale.ch_per_su or 0.0)
     if layout.height <= 0:
         reason = "its pose lies below the floor"
         skipped = Skipped(view.keyframe, "keyframe", reason)
@@ -168,17 +256,20 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
         )
     events: list[Event] = []
     patch = rooms.clipped_patch(layout, config.rooms)
-    known = [room.density for room in state.rooms]
-    chosen, _ = rooms.choose(patch, known, state.current, config.rooms)
+    here = [k for k, room in enumerate(state.rooms) if room.level == state.level]
+    known = [state.rooms[k].density for k in here]
+    current = None if state.current is None else here.index(state.current)
+    chosen, _ = rooms.choose(patch, known, current, config.rooms)
     fused = config.shape.method == "fusion"
     walls, rejected = ((), ()) if fused else _walls(layout, config)
     views = (layout,) if fused else ()
     if chosen is None:
         number = max((room.number for room in state.rooms), default=0) + 1
-        room = RoomState(number, patch.density, walls, (), views)
+        room = RoomState(number, patch.density, walls, (), views, state.level)
         chosen = len(state.rooms)
         events.append(RoomOpened(view.keyframe, room_id(number)))
     else:
+        chosen = here[chosen]
         old = state.rooms[chosen]
         room = replace(
             old,
@@ -197,7 +288,7 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
         state,
         rooms=(*state.rooms[:chosen], room, *state.rooms[chosen + 1 :]),
         current=chosen,
-        cameras=_assigned(state.cameras, view.index, room.number),
+        cameras=_assigned(state.cameras, layout, room.number),
         skipped=(
             *state.skipped,
             *(Skipped(view.keyframe, "wall", why, n) for why, n in sorted(counts.items())),
@@ -218,10 +309,11 @@ def _walls(
 
 
 def _assigned(
-    cameras: tuple[PlacedCamera, ...], index: int, number: int
+    cameras: tuple[PlacedCamera, ...], layout: RegisteredLayout, number: int
 ) -> tuple[PlacedCamera, ...]:
-    placed = replace(cameras[index], room=number)
-    return (*cameras[:index], placed, *cameras[index + 1 :])
+    at = layout.index
+    placed = replace(cameras[at], room=number, ceiling=layout.ceiling)
+    return (*cameras[:at], placed, *cameras[at + 1 :])
 
 
 def _join(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
@@ -233,6 +325,7 @@ def _join(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
             i
             for i, other in enumerate(state.rooms)
             if i != state.current
+            and other.level == current.level
             and rooms.overlap(current.density, other.density, config.rooms.merge_over)
             > config.rooms.merge_overlap
         ]
@@ -250,7 +343,7 @@ def _absorb(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
     index = 0
     while index < len(state.rooms):
         room = state.rooms[index]
-        others = [other for other in state.rooms if other is not room]
+        others = [o for o in state.rooms if o is not room and o.level == room.level]
         few = sum(camera.room == room.number for camera in state.cameras)
         if (
             index == state.current

@@ -27,7 +27,7 @@ from panoplan.exporters.pictures import write_picture
 from panoplan.metrics.alignment import Freedom, transformed
 from panoplan.metrics.report import Report, RoomsKind, evaluate
 from panoplan.types.arrays import FloatArray
-from panoplan.types.plan import FloorPlan, PlanPose, Room, ScaleEstimate
+from panoplan.types.plan import Aperture, FloorPlan, PlanPose, Room, ScaleEstimate
 from panoplan.types.truth import GroundTruth, TrueRoom
 
 if TYPE_CHECKING:
@@ -74,10 +74,14 @@ def true_plan(truth: GroundTruth, rooms: RoomsKind = "rooms") -> FloorPlan:
             for room in true_rooms
         ),
         trajectory=cameras,
-        doors=plan.doors,
-        openings=plan.openings,
-        windows=plan.windows,
+        doors=_apertures("door", plan.doors),
+        openings=_apertures("opening", plan.openings),
+        windows=_apertures("window", plan.windows),
     )
+
+
+def _apertures(kind: str, segments: tuple[FloatArray, ...]) -> tuple[Aperture, ...]:
+    return tuple(Aperture(f"{kind}_{k + 1:02d}", s) for k, s in enumerate(segments))
 
 
 def draw_comparison(

@@ -88,7 +88,7 @@ def content_bounds(plan: FloorPlan) -> tuple[FloatArray, FloatArray]:
     """Least and greatest coordinates of all that a plan holds, (0, 0) and (1, 1) if nothing."""
     parts = [room.polygon for room in plan.rooms if room.polygon is not None]
     parts += [camera.position[None] for camera in plan.trajectory]
-    parts += [*plan.doors, *plan.openings, *plan.windows]
+    parts += [item.segment for item in (*plan.doors, *plan.openings, *plan.windows)]
     if not parts:
         return np.zeros(2), np.ones(2)
     points = np.concatenate(parts)
@@ -373,12 +373,12 @@ def _segments(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
         ("passages", plan.openings, QUIET_COLOUR, (0, (2.0, 1.5))),
         ("windows", plan.windows, WINDOW_COLOUR, "solid"),
     )
-    for name, segments, colour, style in kinds:
-        if not segments:
+    for name, items, colour, style in kinds:
+        if not items:
             continue
         for width, ink, dash in ((3.4, "white", "solid"), (1.3, colour, style)):
             lines = LineCollection(
-                [np.asarray(s) for s in segments],
+                [item.segment for item in items],
                 colors=ink,
                 linewidths=width * sheet.weight,
                 linestyles=[dash],

@@ -1,4 +1,4 @@
-"""Layouts as .npz: floor_boundary, and optionally ceiling_boundary, corners, floor_sigma."""
+"""Layouts as .npz: floor_boundary, and optionally the other arrays of a layout."""
 
 from __future__ import annotations
 
@@ -13,11 +13,13 @@ from numpy.typing import NDArray
 from panoplan.errors import InputError
 from panoplan.formats.atomic import read_bytes, write_bytes
 from panoplan.formats.npy import parse_npy
-from panoplan.types.layout import Layout
+from panoplan.types.layout import Layout, Spans
 
 _FILE_LIMIT = 64 * 2**20
 _MEMBER_LIMIT = 16 * 2**20
 _FIELDS = ("floor_boundary", "ceiling_boundary", "corners", "floor_sigma")
+_SPANS = {"door_cols": "doors", "opening_cols": "openings", "window_cols": "windows"}
+_CEILING_CORNERS = ("ceil_corner_u", "ceil_corner_phi")
 _BROKEN = (zipfile.BadZipFile, zlib.error, EOFError, OSError, RuntimeError, ValueError)
 
 
@@ -26,8 +28,10 @@ def read_layout_npz(path: Path) -> Layout:
 
     Args:
         path: `floor_boundary` (W,) elevation in rad, positive upwards, NaN where unknown, and
-            optionally the other arrays of `Layout` in its conventions; at most 64 MiB, a member
-            at most 16 MiB unpacked.
+            optionally the other arrays of `Layout` in its conventions; `door_cols`,
+            `opening_cols` and `window_cols` (K, 2) first and last column; instead of
+            `ceiling_boundary` also `ceil_corner_u` (K,) columns and `ceil_corner_phi` (K,) their
+            elevations. At most 64 MiB, a member at most 16 MiB unpacked.
 
     Returns:
         The layout.
@@ -40,9 +44,25 @@ def read_layout_npz(path: Path) -> Layout:
     if "floor_boundary" not in arrays:
         raise InputError(path, "no floor_boundary", "floor_boundary (W,) in rad")
     try:
-        return Layout(**arrays)
+        return _layout(arrays)
     except InputError as error:
         raise InputError(f"{path}, {error.source}", error.found, error.expected) from None
+
+
+def _layout(arrays: dict[str, NDArray[np.float64]]) -> Layout:
+    told = {name: arrays[name] for name in _FIELDS if name in arrays}
+    spans = None
+    if any(name in arrays for name in _SPANS):
+        none = np.empty((0, 2))
+        spans = Spans(**{field: arrays.get(name, none) for name, field in _SPANS.items()})
+    if "ceiling_boundary" not in told and all(name in arrays for name in _CEILING_CORNERS):
+        columns, elevations = (arrays[name].ravel() for name in _CEILING_CORNERS)
+        if len(columns) != len(elevations) or not np.isfinite(columns).all():
+            raise InputError("ceil_corner_u", f"{len(columns)} columns", f"{len(elevations)}")
+        width = told["floor_boundary"].size
+        told["ceiling_boundary"] = np.full(width, np.nan)
+        told["ceiling_boundary"][np.round(columns).astype(int) % width] = elevations
+    return Layout(**told, spans=spans)
 
 
 def write_layout_npz(path: Path, layout: Layout) -> None:
@@ -53,8 +73,9 @@ def write_layout_npz(path: Path, layout: Layout) -> None:
     """
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
-        for name in _FIELDS:
-            value = getattr(layout, name)
+        values = {name: getattr(layout, name) for name in _FIELDS}
+        values |= {name: getattr(layout.spans, field, None) for name, field in _SPANS.items()}
+        for name, value in values.items():
             if value is None:
                 continue
             # A fixed date, so that the same layout gives the same bytes.
@@ -71,7 +92,7 @@ def _members(path: Path) -> dict[str, NDArray[np.float64]]:
     try:
         with zipfile.ZipFile(io.BytesIO(data)) as archive:
             sizes = {item.filename: item.file_size for item in archive.infolist()}
-            for name in _FIELDS:
+            for name in (*_FIELDS, *_SPANS, *_CEILING_CORNERS):
                 size = sizes.get(f"{name}.npy")
                 if size is None:
                     continue

@@ -18,7 +18,16 @@ from panoplan.formats.atomic import write_text
 from panoplan.formats.sequence import read_json
 from panoplan.geometry.polygons import signed_area
 from panoplan.types.arrays import FloatArray, frozen_array
-from panoplan.types.plan import FloorPlan, PlanPose, Room, ScaleEstimate, Skipped, Wall
+from panoplan.types.plan import (
+    Aperture,
+    FloorPlan,
+    PlanPose,
+    Room,
+    ScaleEstimate,
+    SharedWall,
+    Skipped,
+    Wall,
+)
 
 SCHEMA = 1
 """Version of the schema that is written and read."""
@@ -101,9 +110,19 @@ def plan_to_dict(plan: FloorPlan) -> dict[str, Any]:
             ),
         },
         "rooms": [_room_to_dict(room) for room in plan.rooms],
-        "doors": [_numbers(s) for s in plan.doors],
-        "openings": [_numbers(s) for s in plan.openings],
-        "windows": [_numbers(s) for s in plan.windows],
+        "shared_walls": [
+            {
+                "id": wall.id,
+                "walls": list(wall.walls),
+                "thickness": _length(wall.thickness),
+                "measured": wall.measured,
+                "solid": wall.solid,
+            }
+            for wall in plan.shared_walls
+        ],
+        "doors": [_aperture_to_dict(item) for item in plan.doors],
+        "openings": [_aperture_to_dict(item) for item in plan.openings],
+        "windows": [_aperture_to_dict(item) for item in plan.windows],
         "trajectory": [
             {
                 "id": pose.id,
@@ -140,11 +159,35 @@ def plan_from_dict(data: dict[str, Any]) -> FloorPlan:
             for p in data["trajectory"]
         ),
         skipped=tuple(Skipped(**item) for item in data["skipped"]),
-        doors=tuple(_array(s) for s in data["doors"]),
-        openings=tuple(_array(s) for s in data["openings"]),
-        windows=tuple(_array(s) for s in data["windows"]),
+        shared_walls=tuple(
+            SharedWall(**{**item, "walls": tuple(item["walls"])}) for item in data["shared_walls"]
+        ),
+        doors=tuple(_aperture_from_dict(item) for item in data["doors"]),
+        openings=tuple(_aperture_from_dict(item) for item in data["openings"]),
+        windows=tuple(_aperture_from_dict(item) for item in data["windows"]),
         settings=data["settings"],
         version=data["version"],
+    )
+
+
+def _aperture_to_dict(item: Aperture) -> dict[str, Any]:
+    return {
+        "id": item.id,
+        "a": _numbers(item.segment[0]),
+        "b": _numbers(item.segment[1]),
+        "rooms": list(item.rooms),
+        "walls": list(item.walls),
+        "sources": list(item.sources),
+    }
+
+
+def _aperture_from_dict(data: dict[str, Any]) -> Aperture:
+    return Aperture(
+        data["id"],
+        _array([data["a"], data["b"]]),
+        tuple(data["rooms"]),
+        tuple(data["walls"]),
+        tuple(data["sources"]),
     )
 
 

@@ -36,10 +36,10 @@ def fingerprint(keyframes: Sequence[Keyframe], config: Config, walk: Walk) -> st
     for keyframe in keyframes:
         digest.update(repr((keyframe.id, keyframe.missing)).encode())
         digest.update(keyframe.pose.rotation.tobytes() + keyframe.pose.translation.tobytes())
-        if keyframe.layout is not None:
-            for item in dataclasses.fields(keyframe.layout):
-                value = getattr(keyframe.layout, item.name)
-                digest.update(b"-" if value is None else value.tobytes())
+        for part in (keyframe.layout, keyframe.layout and keyframe.layout.spans):
+            for item in () if part is None else dataclasses.fields(part):
+                value = getattr(part, item.name)
+                digest.update(value.tobytes() if isinstance(value, np.ndarray) else b"-")
     return digest.hexdigest()
 
 

@@ -176,8 +176,8 @@ def read_true_plan(path: Path) -> TruePlan:
 
     Args:
         path: `rooms`, `rooms_partial` (objects with id, label, polygon, holes), `doors`,
-            `windows`, `openings` (segments; all annotated openings of `segments_raw` where the
-            file has them), `axis`, `camera_height`; metres, plan frame.
+            `windows`, `openings` (segments, as annotated in `segments_raw` where the file has
+            that), `axis`, `camera_height`; metres, plan frame.
 
     Returns:
         The true plan, polygons counter-clockwise.
@@ -191,9 +191,9 @@ def read_true_plan(path: Path) -> TruePlan:
     return TruePlan(
         rooms=_rooms(data.get("rooms", []), path, "rooms"),
         rooms_partial=_rooms(data.get("rooms_partial", []), path, "rooms_partial"),
-        doors=_segments(data.get("doors", []), path, "doors"),
+        doors=_segments(raw.get("doors", data.get("doors", [])), path, "doors"),
         openings=_segments(raw.get("openings", data.get("openings", [])), path, "openings"),
-        windows=_segments(data.get("windows", []), path, "windows"),
+        windows=_segments(raw.get("windows", data.get("windows", [])), path, "windows"),
         axis=None if axis is None else frozen_array(f"{path}, axis", axis, (2,)),
         camera_height_m=_height(data.get("camera_height"), path),
     )

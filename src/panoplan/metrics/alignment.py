@@ -9,7 +9,7 @@ import numpy as np
 
 from panoplan.errors import InputError
 from panoplan.types.arrays import FloatArray, frozen_array
-from panoplan.types.plan import FloorPlan, PlanPose, Room, Wall
+from panoplan.types.plan import Aperture, FloorPlan, PlanPose, Room, Wall
 from panoplan.types.pose import Trajectory
 from panoplan.types.truth import GroundTruth
 
@@ -220,17 +220,20 @@ def transformed(plan: FloorPlan, transform: Similarity) -> FloorPlan:
     `camera_height_m` go on telling how the plan was made.
     """
 
-    def segments(items: tuple[FloatArray, ...]) -> tuple[FloatArray, ...]:
-        return tuple(transform.apply(item) for item in items)
+    def moved(items: tuple[Aperture, ...]) -> tuple[Aperture, ...]:
+        return tuple(replace(item, segment=transform.apply(item.segment)) for item in items)
 
     return replace(
         plan,
         unit="m",
         rooms=tuple(_moved_room(room, transform) for room in plan.rooms),
         trajectory=tuple(_moved_camera(camera, transform) for camera in plan.trajectory),
-        doors=segments(plan.doors),
-        openings=segments(plan.openings),
-        windows=segments(plan.windows),
+        shared_walls=tuple(
+            replace(wall, thickness=transform.scale * wall.thickness) for wall in plan.shared_walls
+        ),
+        doors=moved(plan.doors),
+        openings=moved(plan.openings),
+        windows=moved(plan.windows),
     )
 
 

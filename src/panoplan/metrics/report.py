@@ -18,9 +18,11 @@ from panoplan.metrics.alignment import (
     metres_per_unit,
     transformed,
 )
+from panoplan.metrics.apertures import aperture_score
 from panoplan.metrics.corners import CornerDistances
 from panoplan.metrics.rooms import Match, Region, RoomScore, Score
 from panoplan.metrics.trajectory import TrajectoryError, trajectory_error
+from panoplan.metrics.walls import WallFigures, wall_figures
 from panoplan.types.arrays import BoolArray, FloatArray
 from panoplan.types.plan import FloorPlan, Room
 from panoplan.types.truth import GroundTruth, TrueRoom
@@ -125,6 +127,10 @@ class Report:
         alignment: how the plan was brought onto them.
         rooms: room figures.
         corners: corner figures.
+        walls: where walls lie, and whether their stated uncertainty holds.
+        doors: which were found.
+        openings: which were found.
+        windows: which were found.
         trajectory: camera positions after the alignment, None without common cameras.
         scale_error_percent: estimated scale relative to the true one, less 1; None where it
             cannot be known.
@@ -134,6 +140,10 @@ class Report:
     alignment: Alignment
     rooms: RoomFigures
     corners: CornerFigures
+    walls: WallFigures
+    doors: Score
+    openings: Score
+    windows: Score
     trajectory: TrajectoryError | None
     scale_error_percent: float | None
 
@@ -188,6 +198,15 @@ def evaluate(
         alignment=found,
         rooms=_room_figures(compared, len(plan.rooms) - len(predicted)),
         corners=_corner_figures(compared, truth.plan.axis),
+        walls=wall_figures(
+            [
+                (compared.true[m.true].polygon, predicted[m.predicted].walls)
+                for m in compared.matches
+            ]
+        ),
+        doors=aperture_score(truth.plan.doors, [item.segment for item in moved.doors]),
+        openings=aperture_score(truth.plan.openings, [item.segment for item in moved.openings]),
+        windows=aperture_score(truth.plan.windows, [item.segment for item in moved.windows]),
         trajectory=ate,
         scale_error_percent=scale_error_percent(plan, truth, true_ch_per_su),
     )
@@ -373,6 +392,10 @@ def as_dict(report: Report) -> dict[str, Any]:
             "true_to_predicted": _distances(corner.true_to_predicted),
             "predicted_to_true": _distances(corner.predicted_to_true),
         },
+        "walls": _plain(report.walls),
+        "doors": _score(report.doors),
+        "openings": _score(report.openings),
+        "windows": _score(report.windows),
         "trajectory": None if report.trajectory is None else _plain(report.trajectory),
         "scale_error_percent": report.scale_error_percent,
     }
@@ -453,8 +476,20 @@ def _shape_rows(report: Report) -> list[tuple[str, str]]:
             "area error",
             f"median {_number(median, '+.1f', ' %')}, mean absolute {_number(mean, '.1f', ' %')}",
         ),
-        ("overlap of predicted rooms", f"{room.overlap_m2:.2f} m²"),
+        ("overlap of predicted rooms", f"{room.overlap_m2:.3f} m²"),
+        ("wall distance, median", _walls(report.walls)),
+        ("doors", _recall_precision(report.doors)),
+        ("openings", _recall_precision(report.openings)),
+        ("windows", _recall_precision(report.windows)),
     ]
+
+
+def _walls(walls: WallFigures) -> str:
+    told = f"{_cm(walls.median_cm)} ({walls.compared} of {walls.predicted})"
+    if walls.within_1_sigma is None:
+        return told
+    shares = f"{walls.within_1_sigma:.2f} within 1, {_number(walls.within_2_sigma, '.2f')} within 2"
+    return f"{told}; {shares} of the stated ±"
 
 
 def _recall_precision(score: Score) -> str:

@@ -12,6 +12,7 @@ from functools import lru_cache
 
 import numpy as np
 
+from panoplan.simulate.spans import EXACT_SPANS, MEASURED_SPANS, SpanErrors, noisy_spans
 from panoplan.simulate.views import View
 from panoplan.types.arrays import BoolArray, FloatArray, IntArray
 from panoplan.types.layout import Layout
@@ -142,6 +143,7 @@ class NoiseModel:
         corner_recall: share of true corners found, none missed where 1.
         corner_precision: share of the corners told that are true.
         corner_spread: (largest error in columns of 1024, share of found corners within it).
+        spans: how doors, openings and windows are told.
         drift_m: largest error of the odometry's position over the walk, metres.
         drift_deg: typical error of the odometry's heading at the end of the walk.
     """
@@ -162,6 +164,7 @@ class NoiseModel:
     corner_recall: float = 1.0
     corner_precision: float = 1.0
     corner_spread: tuple[tuple[int, float], ...] = ()
+    spans: SpanErrors = EXACT_SPANS
     drift_m: float = 0.0
     drift_deg: float = 0.0
 
@@ -180,6 +183,7 @@ MILD = NoiseModel(
     corner_recall=MEASURED.corner_recall[-1][1],
     corner_precision=MEASURED.corner_precision[-1][1],
     corner_spread=_corner_spread(),
+    spans=MEASURED_SPANS,
     drift_m=0.05,
     drift_deg=0.1,
 )
@@ -196,6 +200,7 @@ HARD = NoiseModel(
     corner_recall=MEASURED.corner_recall[-1][1],
     corner_precision=MEASURED.corner_precision[-1][1],
     corner_spread=_corner_spread(),
+    spans=MEASURED_SPANS,
     drift_m=0.4,
     drift_deg=1.0,
 )
@@ -245,7 +250,7 @@ def noisy_layout(view: View, model: NoiseModel, rng: np.random.Generator) -> Lay
         rng: of all errors.
 
     Returns:
-        Floor and ceiling boundary and corners with the errors of the model. The ceiling's
+        Floor and ceiling boundary, corners and spans with the errors of the model. The ceiling's
         errors are not measured: they are the floor's core, partly independent.
     """
     width = len(view.range_m)
@@ -264,7 +269,8 @@ def noisy_layout(view: View, model: NoiseModel, rng: np.random.Generator) -> Lay
     apart = column_field(width, rng)
     shared = _CEILING_CORRELATION
     ceiling = view.ceiling_boundary - core * (shared * field + np.sqrt(1 - shared**2) * apart)
-    return Layout(elevation, ceiling, noisy_corners(corners, width, model, rng))
+    found = noisy_corners(corners, width, model, rng)
+    return Layout(elevation, ceiling, found, spans=noisy_spans(view, model.spans, rng))
 
 
 def column_field(width: int, rng: np.random.Generator) -> FloatArray:

@@ -13,7 +13,7 @@ from panoplan.geometry.sphere import column_heading, heading_column
 from panoplan.simulate.buildings import Building
 from panoplan.simulate.walks import locate
 from panoplan.types.arrays import BoolArray, FloatArray, IntArray
-from panoplan.types.layout import Layout
+from panoplan.types.layout import Layout, Spans
 
 _EDGE_SLACK = 1e-9
 _ASIDE_RAD = 1e-7
@@ -42,6 +42,7 @@ class View:
         range_m: (W,) horizontal distance to the floor boundary.
         closed_range_m: (W,) the same with all doors and openings closed; equal where no leak.
         surface: (W,) `Surface` the boundary lies on.
+        closed_surface: (W,) `Surface` with all doors and openings closed.
         passage: (W,) index of the building's passage whose face the column meets first, or −1.
         leaked: (W,) whether the boundary lies beyond that passage.
         corners: (K,) columns of the visible corners, sorted, in [0, W).
@@ -53,6 +54,7 @@ class View:
     range_m: FloatArray
     closed_range_m: FloatArray
     surface: NDArray[np.int8]
+    closed_surface: NDArray[np.int8]
     passage: IntArray
     leaked: BoolArray
     corners: FloatArray
@@ -153,6 +155,7 @@ class ViewCaster:
             range_m=distance,
             closed_range_m=closed,
             surface=surface,
+            closed_surface=near.surface[first],
             passage=near.passage[first],
             leaked=leaked,
             corners=self._corners(position, heading, width, near, beyond),
@@ -267,6 +270,24 @@ def tilted(layout: Layout, level_from_cam: FloatArray) -> Layout:
         floor,
         None if ceiling is None else _tilted_boundary(ceiling, columns, level_from_cam),
         corners,
+        spans=_tilted_spans(layout, level_from_cam),
+    )
+
+
+def _tilted_spans(layout: Layout, level_from_cam: FloatArray) -> Spans | None:
+    """A tilt of a few degrees moves a span by less than networks err: its ends are rounded."""
+    if layout.spans is None:
+        return None
+    width = layout.width
+    columns = np.arange(width, dtype=np.float64)
+    moved = _directions(layout.floor_boundary, column_heading(columns, width)) @ level_from_cam
+    at = heading_column(np.arctan2(moved[:, 0], moved[:, 2]), width) % width
+
+    def there(told: FloatArray) -> FloatArray:
+        return np.asarray(at[np.round(told).astype(int) % width])
+
+    return Spans(
+        *(there(s) for s in (layout.spans.doors, layout.spans.openings, layout.spans.windows))
     )
 
 

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 
 from panoplan.config import RegistrationConfig
 from panoplan.geometry.sphere import column_heading, rays
 from panoplan.types.arrays import FloatArray
 from panoplan.types.keyframe import Keyframe
+from panoplan.types.layout import Layout
 from panoplan.types.view import CastLayout, RegisteredLayout
 
 
@@ -56,6 +59,8 @@ def cast(
         offsets=offsets,
         sigmas=_range_sigmas(np.hypot(*offsets.T), layout.floor_sigma, config),
         corners=layout.corners,
+        ceiling=_ceiling(keyframe, layout, headings, np.hypot(*offsets.T)),
+        spans=layout.spans,
     )
 
 
@@ -81,7 +86,27 @@ def register(view: CastLayout, ch_per_su: float) -> RegisteredLayout:
         boundary=height * view.offsets + camera,
         sigmas=height * view.sigmas,
         corners=view.corners,
+        ceiling=height * view.ceiling,
+        spans=view.spans,
     )
+
+
+def _ceiling(keyframe: Keyframe, layout: Layout, headings: FloatArray, ranges: FloatArray) -> float:
+    """Height of the ceiling above the floor for a camera height of 1; the median column's.
+
+    A wall's ceiling is above its floor: where a small tilt moves one to a neighbouring column, the
+    ranges of the two differ by little.
+    """
+    if layout.ceiling_boundary is None:
+        return math.nan
+    directions = rays(layout.ceiling_boundary, headings) @ keyframe.pose.rotation.T
+    with np.errstate(invalid="ignore", divide="ignore"):
+        rise = -directions[:, 1] / np.hypot(directions[:, 0], directions[:, 2]) * ranges
+        rise = rise[(rise > 0) & (rise < _HIGHEST_CH)]
+    return 1.0 + float(np.median(rise)) if len(rise) else math.nan
+
+
+_HIGHEST_CH = 20.0
 
 
 def _range_sigmas(

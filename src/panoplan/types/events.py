@@ -10,7 +10,7 @@ from panoplan.types.plan import ScaleEstimate
 
 @dataclass(frozen=True)
 class KeyframeWaiting:
-    """A keyframe is kept until the scale is known; `waiting` of them are."""
+    """A keyframe is kept until the scale or its level is known; `waiting` of them are."""
 
     keyframe: str
     waiting: int
@@ -37,6 +37,14 @@ class RoomOpened:
 
     keyframe: str
     room: str
+
+
+@dataclass(frozen=True)
+class LevelReached:
+    """The camera came to a storey: 0 is that of the first keyframe, others count by arrival."""
+
+    keyframe: str
+    level: int
 
 
 @dataclass(frozen=True)
@@ -91,6 +99,7 @@ Event = (
     KeyframeWaiting
     | ScaleFrozen
     | KeyframeSkipped
+    | LevelReached
     | RoomOpened
     | KeyframePlaced
     | RoomsJoined

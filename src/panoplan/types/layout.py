@@ -11,6 +11,30 @@ from panoplan.types.arrays import FloatArray, frozen_array
 
 
 @dataclass(frozen=True, eq=False)
+class Spans:
+    """Where a layout's source sees passages and windows in the walls.
+
+    Each is (K, 2) columns in [0, W], first and last; a span over the image's edge ends before it
+    starts.
+
+    Attributes:
+        doors: with or without a leaf.
+        openings: where the room goes on without a door.
+        windows: in outer walls.
+    """
+
+    doors: FloatArray
+    openings: FloatArray
+    windows: FloatArray
+
+    def __post_init__(self) -> None:
+        """Copies and checks the arrays."""
+        for name in ("doors", "openings", "windows"):
+            columns = np.asarray(getattr(self, name), dtype=np.float64).reshape(-1, 2)
+            object.__setattr__(self, name, frozen_array(name, columns, (None, 2)))
+
+
+@dataclass(frozen=True, eq=False)
 class Layout:
     """Room layout seen from one camera.
 
@@ -27,12 +51,14 @@ class Layout:
             source gives none.
         floor_sigma: (W,) standard deviation of `floor_boundary` in rad as its source states
             it, or None.
+        spans: passages and windows, or None where the layout's source tells none.
     """
 
     floor_boundary: FloatArray
     ceiling_boundary: FloatArray | None = None
     corners: FloatArray | None = None
     floor_sigma: FloatArray | None = None
+    spans: Spans | None = None
 
     def __post_init__(self) -> None:
         """Copies and checks the arrays."""
@@ -59,6 +85,11 @@ class Layout:
             corners = np.sort(corners % width)
             corners.setflags(write=False)
             object.__setattr__(self, "corners", corners)
+        if self.spans is not None:
+            for name in ("doors", "openings", "windows"):
+                columns = getattr(self.spans, name)
+                if np.any((columns < -0.5) | (columns > width)):
+                    raise InputError(name, "a column outside the image", f"columns in 0..{width}")
 
     @property
     def width(self) -> int:

@@ -12,6 +12,10 @@ from typing import Any, Literal
 from panoplan.types.arrays import FloatArray
 
 Unit = Literal["m", "ch"]
+ApertureKind = Literal["door", "opening", "window"]
+ApertureSource = Literal["assumed width", "border", "leak", "seen", "walked"]
+"""What speaks for a door, opening or window: layouts show it; their boundary goes through it; the
+camera walked through it; two rooms end without a wall between. Or its width is a guess."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +92,46 @@ class Room:
 
 
 @dataclass(frozen=True, eq=False)
+class SharedWall:
+    """Two walls of two rooms that are the faces of one.
+
+    Attributes:
+        id: unique in the plan.
+        walls: ids of the two faces.
+        thickness: plan units, over what the two have in common.
+        measured: whether both faces were; else the thickness is that of the plan's other walls, or
+            a usual one.
+        solid: false where the rooms only end here, as at an opening.
+    """
+
+    id: str
+    walls: tuple[str, str]
+    thickness: float
+    measured: bool
+    solid: bool
+
+
+@dataclass(frozen=True, eq=False)
+class Aperture:
+    """A door, opening or window.
+
+    Attributes:
+        id: unique in the plan.
+        segment: (2, 2) from side to side, plan frame; in the middle of a shared wall, else on the
+            face that is known.
+        rooms: ids of the rooms that it leads to, one or two.
+        walls: ids of their walls that it is in.
+        sources: what speaks for it.
+    """
+
+    id: str
+    segment: FloatArray
+    rooms: tuple[str, ...] = ()
+    walls: tuple[str, ...] = ()
+    sources: tuple[ApertureSource, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
 class PlanPose:
     """A keyframe's camera in the plan.
 
@@ -134,9 +178,10 @@ class FloorPlan:
         rooms: in the order of their ids.
         trajectory: every keyframe that was placed, in the order of the walk.
         skipped: what was left out and why.
-        doors: (D, 2, 2) segments.
-        openings: (O, 2, 2) segments.
-        windows: (W, 2, 2) segments.
+        shared_walls: faces of one wall between two rooms.
+        doors: with or without a leaf.
+        openings: where a room goes on into the next without a door.
+        windows: in outer walls.
         settings: the resolved settings as nested plain values.
         version: of panoplan.
     """
@@ -148,8 +193,9 @@ class FloorPlan:
     rooms: tuple[Room, ...]
     trajectory: tuple[PlanPose, ...]
     skipped: tuple[Skipped, ...] = ()
-    doors: tuple[FloatArray, ...] = ()
-    openings: tuple[FloatArray, ...] = ()
-    windows: tuple[FloatArray, ...] = ()
+    shared_walls: tuple[SharedWall, ...] = ()
+    doors: tuple[Aperture, ...] = ()
+    openings: tuple[Aperture, ...] = ()
+    windows: tuple[Aperture, ...] = ()
     settings: dict[str, Any] = field(default_factory=dict)
     version: str = ""

@@ -102,3 +102,24 @@ class RoomShape:
     rounds: tuple[FloatArray, ...] = ()
     sigmas: FloatArray | None = None
     holes: tuple[FloatArray, ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class WallStretch:
+    """A stretch of a room's wall where its views show something, or see through.
+
+    Attributes:
+        segment: (2, 2) along the wall.
+        votes: weight of the views that call it a door, an opening, a window.
+        telling: views that tell it.
+        able: views that look at it and tell such things.
+        leaking: views whose boundary goes on behind it.
+        looking: views that look at it.
+    """
+
+    segment: FloatArray
+    votes: tuple[float, float, float]
+    telling: int
+    able: int
+    leaking: int
+    looking: int

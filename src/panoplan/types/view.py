@@ -6,9 +6,11 @@ the same for a walk however its world is turned or shifted.
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 from panoplan.types.arrays import FloatArray
+from panoplan.types.layout import Spans
 
 
 @dataclass(frozen=True, eq=False)
@@ -24,6 +26,8 @@ class CastLayout:
             frame; NaN where unknown.
         sigmas: (W,) standard deviations of the ranges for a camera height of 1.
         corners: (K,) columns of wall corners, or None.
+        ceiling: height above the floor for a camera height of 1, NaN where unknown.
+        spans: columns of passages and windows, or None.
     """
 
     keyframe: str
@@ -33,6 +37,8 @@ class CastLayout:
     offsets: FloatArray
     sigmas: FloatArray
     corners: FloatArray | None
+    ceiling: float = math.nan
+    spans: Spans | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +53,8 @@ class RegisteredLayout:
         boundary: (W, 2) boundary points, NaN where unknown.
         sigmas: (W,) standard deviations of the boundary's ranges.
         corners: (K,) columns of wall corners, or None.
+        ceiling: its height above the floor, NaN where unknown.
+        spans: columns of passages and windows, or None.
     """
 
     keyframe: str
@@ -56,3 +64,5 @@ class RegisteredLayout:
     boundary: FloatArray
     sigmas: FloatArray
     corners: FloatArray | None
+    ceiling: float = math.nan
+    spans: Spans | None = None
