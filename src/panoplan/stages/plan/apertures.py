@@ -110,8 +110,7 @@ def apertures(
     judged.sort(key=lambda item: -item[0])
     kept: list[WallAperture] = []
     for _, aperture in judged:
-        near = [a for a in kept if _near(a.segment, aperture.segment)]
-        if not any(_share(aperture.segment, other.segment, config) > 0 for other in near):
+        if not any(_share(aperture.segment, other.segment, config) > 0 for other in kept):
             kept.append(aperture)
     return tuple(sorted(kept, key=lambda aperture: (aperture.walls, *aperture.segment[0])))
 
@@ -396,11 +395,6 @@ _NEXT = 2
 """Keyframes that follow one another; one between may have no layout."""
 
 
-def _near(one: FloatArray, other: FloatArray) -> bool:
-    reach = np.hypot(*(one[1] - one[0])) + np.hypot(*(other[1] - other[0]))
-    return bool(np.hypot(*(one.mean(axis=0) - other.mean(axis=0))) < reach / 2 + 1.0)
-
-
 def _share(one: FloatArray, other: FloatArray, config: AperturesConfig) -> float:
     """How much of the shorter of two stretches of wall the other covers; 0 on other walls."""
     length = float(np.hypot(*(one[1] - one[0]))), float(np.hypot(*(other[1] - other[0])))
@@ -432,25 +426,25 @@ def _clustered(
     Of two stretches of very different length the longer is no sight of the shorter, unless the
     shorter is known to be `partial`.
     """
-    clusters: list[list[int]] = []
+    if not segments:
+        return []
+    ends = np.array(segments)
+    middle, length = ends.mean(axis=1), np.hypot(*(ends[:, 1] - ends[:, 0]).T)
+    reach = max(config.same_wall_ch, config.min_width_ch)
+    clusters: dict[int, list[int]] = {}
     for index, segment in enumerate(segments):
-        length = float(np.hypot(*(segment[1] - segment[0])))
-        best, into = config.same_share, None
-        for cluster in clusters:
-            first = segments[cluster[0]]
-            if not _near(first, segment):
-                continue
-            share = _share(first, segment, config)
+        firsts = np.fromiter(clusters, dtype=np.int64, count=len(clusters))
+        away = np.hypot(*(middle[firsts] - middle[index]).T)
+        best, into = config.same_share, index
+        for first in firsts[away <= (length[firsts] + length[index]) / 2 + reach].tolist():
+            share = _share(segments[first], segment, config)
             if share > 0 and not partial[index]:
-                lengths = sorted((length, float(np.hypot(*(first[1] - first[0])))))
-                share *= lengths[0] / max(lengths[1], _SLACK)
+                least, most = sorted((length[index], length[first]))
+                share *= least / max(most, _SLACK)
             if share > best:
-                best, into = share, cluster
-        if into is None:
-            clusters.append([index])
-        else:
-            into.append(index)
-    return clusters
+                best, into = share, first
+        clusters.setdefault(into, []).append(index)
+    return list(clusters.values())
 
 
 def _judged(
@@ -496,10 +490,12 @@ def _judged(
     walls: tuple[Wall, ...] = (first.wall,)
     if face is not None:
         one, other = zip(face.rooms, face.walls, strict=True)
-        walls = (one, other) if one == first.wall else (other, one)
+        walls = (one, other)
         along = (segment[1] - segment[0]) / width
         outward = np.array([along[1], -along[0]])
         segment = segment + ((face.along[0] - segment[0]) @ outward) * outward
+        if one != first.wall:
+            segment = segment[::-1]
     sure = support + proved + 1e-3 * sum(s.telling for s in stretches)
     return sure, WallAperture(kind, segment, walls, tuple(sorted(sources)))
 

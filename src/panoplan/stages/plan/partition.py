@@ -60,9 +60,10 @@ def partition(
     shifts = _shifts(edges, pairs, typical, thin, met, config)
     moved = [_moved(shape, shifts[edges.room == index]) for index, shape in enumerate(shapes)]
     apart = _apart(moved, config)
+    assumed = _middles(pairs, edges)[thin]
     edges = _edges(apart)
     pairs = _facing(edges, config)
-    return tuple(apart), _shared(pairs, edges, typical, config)
+    return tuple(apart), _shared(pairs, edges, assumed, config)
 
 
 @dataclass(frozen=True, eq=False)
@@ -247,13 +248,18 @@ def _apart(shapes: Sequence[RoomShape], config: PartitionConfig) -> list[RoomSha
 
 
 def _doubt(shape: RoomShape, common: shapely.Geometry) -> float:
-    """Mean sigma of a room's walls in a region; infinite where none of them was fitted."""
+    """Mean sigma of a room's walls in a region.
+
+    Infinite where none of them was fitted; 0 where none runs there, deep inside the room.
+    """
     assert shape.polygon is not None
     sigmas = np.full(len(shape.polygon), np.nan) if shape.sigmas is None else shape.sigmas
     ends = np.roll(shape.polygon, -1, axis=0)
     around = common.buffer(_NEAR_CH)
     lines = shapely.linestrings(np.stack([shape.polygon, ends], axis=1))
     inside = shapely.length(shapely.intersection(lines, around))
+    if not inside.any():
+        return 0.0
     inside[np.isnan(sigmas)] = 0.0
     if not inside.any():
         return float("inf")
@@ -311,25 +317,38 @@ def _sigmas_of(ring: FloatArray, shape: RoomShape) -> FloatArray:
     return sigmas
 
 
+def _middles(pairs: _Pairs, edges: _Edges) -> FloatArray:
+    """(P, 2) the middle of what faces, between the two walls."""
+    at = (pairs.low + pairs.high) / 2
+    along, outward = edges.along[pairs.one], edges.outward[pairs.one]
+    return np.asarray(
+        edges.start[pairs.one] + at[:, None] * along + pairs.gap[:, None] / 2 * outward
+    )
+
+
 def _shared(
-    pairs: _Pairs, edges: _Edges, typical: float, config: PartitionConfig
+    pairs: _Pairs, edges: _Edges, assumed: FloatArray, config: PartitionConfig
 ) -> tuple[Facing, ...]:
+    """The walls that rooms share; `assumed` are places where a thickness was not measured."""
     out = []
     for one, other, gap, low, high in zip(
         pairs.one, pairs.other, pairs.gap, pairs.low, pairs.high, strict=True
     ):
         if gap < -_SPIKE_CH:
             continue
-        middle = edges.start[one] + edges.outward[one] * max(gap, 0.0) / 2
+        start = edges.start[one] + edges.outward[one] * max(gap, 0.0) / 2
+        along = start + np.outer([low, high], edges.along[one])
+        away = shapely.distance(shapely.LineString(along), shapely.points(assumed))
+        guessed = bool((away < config.max_overlap_ch).any())
         seen = ~np.isnan(edges.sigma[[one, other]])
         solid = bool(seen.any() or gap >= config.min_thickness_ch)
         out.append(
             Facing(
                 (int(edges.room[one]), int(edges.room[other])),
                 (int(edges.wall[one]), int(edges.wall[other])),
-                middle + np.outer([low, high], edges.along[one]),
+                along,
                 float(max(gap, 0.0)),
-                bool(seen.all() and abs(gap - typical) > 1e-9),
+                bool(seen.all()) and not guessed,
                 solid,
             )
         )
