@@ -796,6 +796,81 @@ class LevelsConfig:
 
 
 @dataclass(frozen=True)
+class AdjustConfig:
+    """Planar bundle adjustment of cameras and walls; goes past the paper."""
+
+    rounds: int = _setting(
+        2,
+        "Adjustments in a row, each from rooms told apart anew with the cameras of the last. "
+        "0: cameras stay where the odometry has them.",
+        low=0,
+        high=10,
+    )
+    iterations: int = _setting(
+        4, "Gauss-Newton steps for each of `odometry_multiples`.", low=1, high=100
+    )
+    stride: int = _setting(
+        4, "Every so many columns are used; neighbours err alike.", low=1, high=64
+    )
+    reach_ch: float = _setting(
+        0.3,
+        "Columns this near to a wall take part: a drift of half a metre.",
+        unit="camera heights",
+        low=0.01,
+        high=5.0,
+    )
+    grazing_deg: float = _setting(
+        15.0,
+        "A wall seen at a smaller angle to it pulls at no camera.",
+        unit="deg",
+        low=0.0,
+        high=89.0,
+    )
+    min_columns: int = _setting(
+        24, "Fewer columns on a wall say little of its direction.", low=2, high=1024
+    )
+    correlation_columns: float = _setting(
+        76.0,
+        "Columns of 1024 after which errors of one view are independent, measured on real "
+        "predictions.",
+        low=1.0,
+        high=1024.0,
+    )
+    common_share: float = _setting(
+        0.015,
+        "Part of a range's error that a panorama's columns have in common: `scale_bias`, which "
+        "the factor takes up.",
+        low=0.0,
+        high=1.0,
+    )
+    factor_sigma: float = _setting(
+        0.03,
+        "Standard deviation of the factor on a view's ranges, measured on real predictions.",
+        low=0.0001,
+        high=1.0,
+    )
+    robust_sigmas: float = _setting(
+        2.0, "Residuals beyond so many sigmas pull less and less.", low=0.1, high=100.0
+    )
+    odometry_ch: float = _setting(
+        0.02,
+        "Standard deviation of the odometry's position after one camera height of way; it grows "
+        "with the root of the way.",
+        unit="camera heights",
+        low=1e-6,
+        high=1.0,
+    )
+    odometry_deg: float = _setting(0.1, "The same of its heading.", unit="deg", low=1e-4, high=90.0)
+    odometry_multiples: tuple[float, ...] = _setting(
+        (0.02, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0),
+        "Multiples of the odometry's sigmas that are tried, increasing; the one with most "
+        "evidence is taken.",
+        low=0.001,
+        high=1000.0,
+    )
+
+
+@dataclass(frozen=True)
 class PartitionConfig:
     """One plan of all rooms; goes past the paper."""
 
@@ -963,6 +1038,7 @@ class Config:
     grouping: GroupingConfig = field(default_factory=GroupingConfig)
     fusion: FusionConfig = field(default_factory=FusionConfig)
     outline: OutlineConfig = field(default_factory=OutlineConfig)
+    adjust: AdjustConfig = field(default_factory=AdjustConfig)
     partition: PartitionConfig = field(default_factory=PartitionConfig)
     apertures: AperturesConfig = field(default_factory=AperturesConfig)
 

@@ -10,7 +10,7 @@ import numpy as np
 from panoplan import __version__
 from panoplan.config import Config, as_dict
 from panoplan.estimator.state import PlacedCamera, RoomState, State, room_id
-from panoplan.geometry.angles import line_angle
+from panoplan.geometry.angles import line_angle, wrapped
 from panoplan.stages import orientation
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import (
@@ -78,8 +78,9 @@ def assemble(state: State, config: Config) -> FloorPlan:
     trajectory = tuple(
         PlanPose(
             camera.keyframe,
-            to_plan(ch_per_su * camera.position_su),
-            camera.heading,
+            to_plan(ch_per_su * camera.position_su + camera.correction.shift),
+            # The heading runs clockwise, the correction counter-clockwise.
+            float(wrapped(camera.heading - camera.correction.turn)),
             None if camera.room is None else room_id(camera.room),
         )
         for camera in state.cameras

@@ -9,14 +9,15 @@ from dataclasses import replace
 import numpy as np
 
 from panoplan.config import Config
-from panoplan.estimator.state import Composition, RoomState, State, room_id
+from panoplan.estimator.state import Composition, PlacedCamera, RoomState, State, room_id
 from panoplan.stages import rooms
+from panoplan.stages.plan.adjust import adjust
 from panoplan.stages.plan.apertures import apertures, stretches
-from panoplan.stages.plan.floorplan import PlannedRoom, plan_rooms
+from panoplan.stages.plan.floorplan import plan_rooms
 from panoplan.stages.plan.partition import partition
 from panoplan.types.events import Event, RoomShaped, RoomsRegrouped
-from panoplan.types.room import RoomShape
-from panoplan.types.view import RegisteredLayout
+from panoplan.types.room import RoomDensity, RoomShape
+from panoplan.types.view import Correction, RegisteredLayout
 
 
 def settle_around(state: State, index: int, config: Config) -> tuple[State, tuple[Event, ...]]:
@@ -37,7 +38,110 @@ def settle_around(state: State, index: int, config: Config) -> tuple[State, tupl
         if other is left
         or (other.level == left.level and rooms.overlap(left.density, other.density) > _TOUCHING)
     ]
-    return settle(state, near, config)
+    keyframes = _keyframes(state, near)
+    state, events = settle(state, near, config)
+    if config.adjust.rounds:
+        state = _adjusted(state, keyframes, 0, config)
+        state, told = settle(state, _holding(state, keyframes), config)
+        events += told
+    return state, events
+
+
+def settle_level(state: State, level: int, config: Config) -> tuple[State, tuple[Event, ...]]:
+    """Settles all rooms of a level, cameras and walls adjusted over all of them.
+
+    Args:
+        state: what is known.
+        level: storey.
+        config: settings.
+
+    Returns:
+        What is known now, and what happened.
+    """
+    there = [k for k, room in enumerate(state.rooms) if room.level == level]
+    if not any(state.rooms[k].stale for k in there):
+        return state, ()
+    keyframes = _keyframes(state, there)
+    state, events = settle(state, there, config)
+    for number in range(config.adjust.rounds):
+        state = _adjusted(state, keyframes, number, config)
+        state, told = settle(state, _holding(state, keyframes), config)
+        events += told
+    return state, events
+
+
+def _keyframes(state: State, chosen: Sequence[int]) -> frozenset[int]:
+    """Places in the walk of the views of some rooms."""
+    return frozenset(view.index for k in chosen for view in state.rooms[k].views)
+
+
+def _holding(state: State, keyframes: frozenset[int]) -> list[int]:
+    """The rooms that hold some of these views."""
+    return [
+        k
+        for k, room in enumerate(state.rooms)
+        if any(view.index in keyframes for view in room.views)
+    ]
+
+
+def _adjusted(state: State, keyframes: frozenset[int], number: int, config: Config) -> State:
+    """Corrects the cameras of some rooms; the rooms are then to be settled again."""
+    assert state.scale is not None
+    chosen = _holding(state, keyframes)
+    views = _views(state, chosen)
+    place = {view.index: k for k, view in enumerate(views)}
+    ch_per_su = state.scale.ch_per_su or 0.0
+    corrections = adjust(
+        views,
+        ch_per_su * np.array([state.cameras[view.index].way_su for view in views]),
+        [
+            ([place[view.index] for view in state.rooms[k].views], shape.polygon)
+            for k in chosen
+            if (shape := state.rooms[k].shape) is not None and shape.polygon is not None
+        ],
+        [state.cameras[view.index].correction for view in views],
+        config.adjust.reach_ch / (1 + number),
+        config.adjust,
+    )
+    cameras = list(state.cameras)
+    for view, correction in zip(views, corrections, strict=True):
+        cameras[view.index] = replace(cameras[view.index], correction=correction)
+    return replace(
+        state,
+        cameras=tuple(cameras),
+        rooms=tuple(
+            replace(room, stale=True) if k in chosen else room for k, room in enumerate(state.rooms)
+        ),
+    )
+
+
+def _views(state: State, chosen: Sequence[int]) -> list[RegisteredLayout]:
+    """Views of some rooms in the order of the walk, where the odometry has them."""
+    views = (view for k in chosen for view in state.rooms[k].views)
+    return sorted(views, key=lambda view: view.index)
+
+
+def carried(state: State, index: int) -> tuple[PlacedCamera, ...]:
+    """The cameras, one of them with the correction of the last one placed before it.
+
+    Args:
+        state: what is known.
+        index: place in the walk of a new camera.
+
+    Returns:
+        All cameras; the new one moves rigidly with the one before.
+    """
+    before = next((c for c in reversed(state.cameras[:index]) if c.room is not None), None)
+    if before is None or before.correction == Correction():
+        return state.cameras
+    assert state.scale is not None
+    camera, old = state.cameras[index], before.correction
+    step = (state.scale.ch_per_su or 0.0) * (camera.position_su - before.position_su)
+    c, s = np.cos(old.turn), np.sin(old.turn)
+    shift = old.shift + np.array([[c, -s], [s, c]]) @ step - step
+    moved = Correction((float(shift[0]), float(shift[1])), old.turn)
+    placed = replace(camera, correction=moved)
+    return (*state.cameras[:index], placed, *state.cameras[index + 1 :])
 
 
 _TOUCHING = 0.05
@@ -61,7 +165,8 @@ def settle(state: State, chosen: Sequence[int], config: Config) -> tuple[State, 
     if not any(state.rooms[k].stale for k in chosen):
         return state, ()
     before = {view.index: state.rooms[k].number for k in chosen for view in state.rooms[k].views}
-    views = sorted((v for k in chosen for v in state.rooms[k].views), key=lambda v: v.index)
+    raw = _views(state, chosen)
+    views = [state.cameras[view.index].correction.apply(view) for view in raw]
     planned = plan_rooms(views, config)
     members = [[views[k].index for k in room.members] for room in planned]
     used = max(room.number for room in state.rooms)
@@ -70,8 +175,26 @@ def settle(state: State, chosen: Sequence[int], config: Config) -> tuple[State, 
     level = state.rooms[chosen[0]].level
     made = []
     for room, number in zip(planned, numbers, strict=True):
-        own = tuple(views[k] for k in sorted(room.members))
-        made.append(_room(room, number, level, own, old.get(number), config))
+        own = sorted(room.members)
+        found = stretches(room.shape, [views[k] for k in own], config.apertures)
+        same = old.get(number)
+        if same is not None and [v.index for v in same.views] == [raw[k].index for k in own]:
+            same = replace(same, shape=room.shape, stretches=found, stale=False)
+        else:
+            density = _density([views[k] for k in own], config)
+            same = RoomState(
+                number,
+                density,
+                (),
+                (),
+                views=tuple(raw[k] for k in own),
+                level=level,
+                shape=room.shape,
+                stretches=found,
+                stale=False,
+                away=-1 if same is None else same.away,
+            )
+        made.append(same)
     after = {view.index: room.number for room in made for view in room.views}
     current = None if state.current is None else state.rooms[state.current].number
     if current in old:
@@ -101,7 +224,11 @@ def _composed(state: State, config: Config) -> tuple[Composition, ...]:
         found = apertures(
             shapes,
             [room.stretches for room in there],
-            [(view.index, view.camera) for room in there for view in room.views],
+            [
+                (view.index, view.camera + state.cameras[view.index].correction.shift)
+                for room in there
+                for view in room.views
+            ],
             facings,
             config.apertures,
         )
@@ -128,33 +255,11 @@ def _numbers(groups: Sequence[Sequence[int]], used: int) -> list[int]:
     return out
 
 
-def _room(
-    planned: PlannedRoom,
-    number: int,
-    level: int,
-    views: tuple[RegisteredLayout, ...],
-    old: RoomState | None,
-    config: Config,
-) -> RoomState:
-    found = stretches(planned.shape, views, config.apertures)
-    same = old is not None and [v.index for v in old.views] == [v.index for v in views]
-    if old is not None and same:
-        return replace(old, shape=planned.shape, stretches=found, stale=False)
+def _density(views: Sequence[RegisteredLayout], config: Config) -> RoomDensity:
     density = rooms.clipped_patch(views[0], config.rooms).density
     for view in views[1:]:
         density = rooms.add(density, rooms.clipped_patch(view, config.rooms).density, config.rooms)
-    return RoomState(
-        number,
-        density,
-        (),
-        (),
-        views=views,
-        level=level,
-        shape=planned.shape,
-        stretches=found,
-        stale=False,
-        away=-1 if old is None else old.away,
-    )
+    return density
 
 
 def _told(

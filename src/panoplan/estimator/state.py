@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
 
 from panoplan.stages.plan.apertures import WallAperture
@@ -11,7 +11,7 @@ from panoplan.stages.plan.partition import Facing
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import ScaleEstimate, Skipped
 from panoplan.types.room import Orientation, RoomDensity, RoomShape, WallPiece, WallStretch
-from panoplan.types.view import CastLayout, RegisteredLayout
+from panoplan.types.view import CastLayout, Correction, RegisteredLayout
 
 
 def room_id(number: int) -> str:
@@ -58,6 +58,8 @@ class PlacedCamera:
         heading: in the world.
         room: number of its room, or None.
         ceiling: its height above the floor in camera heights, NaN where unknown.
+        way_su: way gone until here, trajectory units.
+        correction: of what the odometry says, by bundle adjustment.
     """
 
     keyframe: str
@@ -65,6 +67,8 @@ class PlacedCamera:
     heading: float
     room: int | None
     ceiling: float = math.nan
+    way_su: float = 0.0
+    correction: Correction = field(default_factory=Correction)
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,7 +80,8 @@ class RoomState:
         density: evidence for each cell.
         walls: accepted pieces.
         orientations: wall directions.
-        views: registered layouts, in the order of the walk; none where iSPA makes the shapes.
+        views: layouts registered by the odometry, in the order of the walk; none where iSPA makes
+            the shapes.
         level: storey that it is on.
         shape: as last computed, or None.
         stretches: of its walls where its views show something.

@@ -9,7 +9,7 @@ import numpy as np
 
 from panoplan.config import Config
 from panoplan.errors import ConfigError
-from panoplan.estimator.settle import settle, settle_around
+from panoplan.estimator.settle import carried, settle_around, settle_level
 from panoplan.estimator.state import PlacedCamera, RoomState, State, WalkFrame, room_id
 from panoplan.geometry.rigid import heading_of, turn
 from panoplan.stages import orientation, planes, rooms, scale
@@ -50,11 +50,13 @@ def step(state: State, keyframe: Keyframe, config: Config) -> tuple[State, tuple
     assert frame is not None
     index = state.seen
     moved = (keyframe.pose.translation - frame.origin_su)[[0, 2]]
+    position = frame.walk_from_world @ moved
+    way = 0.0
+    if state.cameras:
+        before = state.cameras[-1]
+        way = before.way_su + float(np.hypot(*(position - before.position_su)))
     camera = PlacedCamera(
-        keyframe.id,
-        frame.walk_from_world @ moved,
-        heading_of(keyframe.pose.rotation),
-        None,
+        keyframe.id, position, heading_of(keyframe.pose.rotation), None, way_su=way
     )
     state = replace(state, seen=index + 1, cameras=(*state.cameras, camera))
     view = None
@@ -90,8 +92,7 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
         events += told
     if config.shape.method == "fusion":
         for level in range(len(state.levels)):
-            there = [k for k, room in enumerate(state.rooms) if room.level == level]
-            state, told = settle(state, there, config)
+            state, told = settle_level(state, level, config)
             events += told
         return state, tuple(events)
     state, joined = _absorb(state, config)
@@ -248,6 +249,8 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
     assert state.scale is not None
     above = replace(view, rise_su=view.rise_su - state.levels[state.level])
     layout = register(above, state.scale.ch_per_su or 0.0)
+    state = replace(state, cameras=carried(state, view.index))
+    corrected = state.cameras[view.index].correction.apply(layout)
     if layout.height <= 0:
         reason = "its pose lies below the floor"
         skipped = Skipped(view.keyframe, "keyframe", reason)
@@ -255,7 +258,7 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
             KeyframeSkipped(view.keyframe, reason),
         )
     events: list[Event] = []
-    patch = rooms.clipped_patch(layout, config.rooms)
+    patch = rooms.clipped_patch(corrected, config.rooms)
     here = [k for k, room in enumerate(state.rooms) if room.level == state.level]
     known = [state.rooms[k].density for k in here]
     current = None if state.current is None else here.index(state.current)

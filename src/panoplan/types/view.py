@@ -7,7 +7,9 @@ the same for a walk however its world is turned or shifted.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+
+import numpy as np
 
 from panoplan.types.arrays import FloatArray
 from panoplan.types.layout import Spans
@@ -66,3 +68,31 @@ class RegisteredLayout:
     corners: FloatArray | None
     ceiling: float = math.nan
     spans: Spans | None = None
+
+
+@dataclass(frozen=True)
+class Correction:
+    """How a registered layout moves: x → camera + shift + factor · R(turn) · (x − camera).
+
+    Attributes:
+        shift: of the camera, walk frame, camera heights.
+        turn: rad, from the first axis to the second.
+        factor: on the ranges: what the camera's height errs, and the layout's scale.
+    """
+
+    shift: tuple[float, float] = (0.0, 0.0)
+    turn: float = 0.0
+    factor: float = 1.0
+
+    def apply(self, view: RegisteredLayout) -> RegisteredLayout:
+        """The layout moved."""
+        camera = view.camera + self.shift
+        c, s = math.cos(self.turn), math.sin(self.turn)
+        turned = (view.boundary - view.camera) @ np.array([[c, s], [-s, c]])
+        return replace(
+            view,
+            camera=camera,
+            boundary=camera + self.factor * turned,
+            sigmas=self.factor * view.sigmas,
+            ceiling=self.factor * view.ceiling,
+        )

@@ -10,6 +10,7 @@ import numpy as np
 import shapely
 
 from panoplan.config import AperturesConfig
+from panoplan.geometry.hits import edge_directions, first_hits
 from panoplan.geometry.sphere import column_heading
 from panoplan.stages.plan.partition import Facing
 from panoplan.types.arrays import FloatArray, IntArray
@@ -180,30 +181,13 @@ def _gaze(view: RegisteredLayout, ring: FloatArray) -> _Gaze | None:
     turned = np.angle(np.exp(1j * (told[known] - own[known])).mean())
     heading = np.where(known, told, own + turned)
     rays = np.stack([np.sin(heading), np.cos(heading)], axis=-1)
-    along, length = _directions(ring)
-    start = ring - view.camera
-    with np.errstate(divide="ignore", invalid="ignore"):
-        across = rays[:, :1] * along[:, 1] - rays[:, 1:] * along[:, 0]
-        distance = (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / across
-        at = (start[:, 0] * rays[:, 1:] - start[:, 1] * rays[:, :1]) / across
-    meets = (distance > 0) & (at >= -_SLACK) & (at <= length + _SLACK)
-    distance = np.where(meets, distance, np.inf)
-    wall = np.argmin(distance, axis=1)
-    row = np.arange(width)
-    if not np.isfinite(distance[row, wall]).all():
+    hits = first_hits(view.camera, rays, ring)
+    if not np.isfinite(hits.range).all():
         return None
-    facing = np.abs(across[row, wall])
-    return _Gaze(view, rays, wall, at[row, wall], distance[row, wall], facing)
+    return _Gaze(view, rays, hits.edge, hits.at, hits.range, hits.sine)
 
 
 _SLACK = 1e-9
-
-
-def _directions(ring: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """Unit direction and length of each wall."""
-    along = np.roll(ring, -1, axis=0) - ring
-    length = np.maximum(np.hypot(*along.T), 1e-12)
-    return along / length[:, None], length
 
 
 def _on_wall(ring: FloatArray, wall: int, low: float, high: float) -> FloatArray:
@@ -344,7 +328,7 @@ _GRAZING = np.sin(np.deg2rad(15.0))
 
 
 def _nearest_wall(ring: FloatArray, point: FloatArray) -> int:
-    along, length = _directions(ring)
+    along, length = edge_directions(ring)
     at = np.clip(((point - ring) * along).sum(axis=1), 0.0, length)
     off = np.hypot(*(point - ring - at[:, None] * along).T)
     return int(np.argmin(off))

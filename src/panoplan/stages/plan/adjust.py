@@ -1,0 +1,363 @@
+"""Planar bundle adjustment: cameras and walls moved until they agree."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+from scipy.sparse import coo_array
+from scipy.sparse.linalg import splu
+
+from panoplan.config import AdjustConfig
+from panoplan.geometry.hits import edge_directions, first_hits
+from panoplan.geometry.rigid import turn
+from panoplan.types.arrays import FloatArray, IntArray
+from panoplan.types.view import Correction, RegisteredLayout
+
+
+@dataclass(frozen=True, eq=False)
+class _Pieces:
+    """Straight pieces of views' boundaries that lie on walls, two points each.
+
+    Attributes:
+        view: (P,) index of the view.
+        wall: (P,) index of the wall.
+        points: (P, 2, 2) relative to the camera; their errors across the wall are independent.
+        sigma: (P,) standard deviation of each across the wall.
+    """
+
+    view: IntArray
+    wall: IntArray
+    points: FloatArray
+    sigma: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Walk:
+    """Cameras (V, 2) of the odometry, way (V − 1,) between them, where the first one stays (3,)."""
+
+    cameras: FloatArray
+    steps: FloatArray
+    first: FloatArray
+
+
+@dataclass(frozen=True, eq=False)
+class _Walls:
+    """Lines: n(angle)·(x − middle) = offset."""
+
+    middle: FloatArray
+    angle: FloatArray
+    offset: FloatArray
+
+
+def adjust(
+    views: Sequence[RegisteredLayout],
+    ways: FloatArray,
+    rooms: Sequence[tuple[Sequence[int], FloatArray]],
+    start: Sequence[Correction],
+    reach_ch: float,
+    config: AdjustConfig,
+) -> tuple[Correction, ...]:
+    """Moves cameras and walls until the layouts agree with one another and with the odometry.
+
+    Unknown are each camera's position, heading and the factor of its ranges, and the line of each
+    wall. Columns near a wall of their room pull at it, robustly; from camera to camera the
+    odometry holds, and the first one stays. How much the odometry errs is taken from the data:
+    the multiple of the configured sigmas with most evidence (Laplace's approximation), so that
+    true poses stay where they are.
+
+    Args:
+        views: in the order of the walk, where the odometry has them.
+        ways: (V,) way gone to each, camera heights, increasing.
+        rooms: indices of the views of each room, and its outline (N, 2), as found after `start`.
+        start: corrections to begin with; that of the first view is kept.
+        reach_ch: columns this near to a wall take part.
+        config: settings.
+
+    Returns:
+        The corrections.
+
+    Source: docs/deviations.md, "Past the paper".
+    """
+    pieces, walls = _pieces(views, rooms, start, reach_ch, config)
+    count = len(views)
+    if len(pieces.view) == 0 or count < 2:
+        return tuple(start)
+    state = np.array([(*c.shift, c.turn, np.log(c.factor)) for c in start])
+    walk = _Walk(np.array([view.camera for view in views]), np.diff(ways), state[0, :3].copy())
+    best, chosen, falling = -np.inf, state, 0
+    for multiple in config.odometry_multiples:
+        for _ in range(config.iterations):
+            system = _system(state, walls, walk, pieces, multiple, config)
+            state, walls = _moved(state, walls, system.solve())
+        evidence = _system(state, walls, walk, pieces, multiple, config).evidence()
+        evidence -= 3 * (count - 1) * np.log(multiple)
+        if evidence > best:
+            best, chosen, falling = evidence, state, 0
+        else:
+            falling += 1
+        if falling == _FALLING:
+            break
+    return tuple(
+        Correction((float(x), float(y)), float(turned), float(np.exp(factor)))
+        for x, y, turned, factor in chosen
+    )
+
+
+_FALLING = 2
+"""The evidence has one peak: after so many falls it is behind."""
+
+
+def _pieces(
+    views: Sequence[RegisteredLayout],
+    rooms: Sequence[tuple[Sequence[int], FloatArray]],
+    start: Sequence[Correction],
+    reach_ch: float,
+    config: AdjustConfig,
+) -> tuple[_Pieces, _Walls]:
+    """Pieces of all views, in their own frames, and the lines of all walls."""
+    view_of: list[int] = []
+    wall_of: list[int] = []
+    points: list[FloatArray] = []
+    sigmas: list[float] = []
+    middles: list[FloatArray] = []
+    angles: list[float] = []
+    for members, ring in rooms:
+        first = len(middles)
+        along, _ = edge_directions(ring)
+        middles += list((ring + np.roll(ring, -1, axis=0)) / 2)
+        angles += np.arctan2(-along[:, 0], along[:, 1]).tolist()
+        for index in members:
+            moved = start[index].apply(views[index])
+            back = turn(-start[index].turn) / start[index].factor
+            for wall, ends, sigma in _view_pieces(moved, ring, along, reach_ch, config):
+                view_of.append(index)
+                wall_of.append(first + wall)
+                points.append(ends @ back)
+                sigmas.append(sigma)
+    return (
+        _Pieces(
+            np.array(view_of, dtype=np.int64),
+            np.array(wall_of, dtype=np.int64),
+            np.array(points).reshape(-1, 2, 2),
+            np.array(sigmas),
+        ),
+        _Walls(np.array(middles).reshape(-1, 2), np.array(angles), np.zeros(len(angles))),
+    )
+
+
+def _view_pieces(
+    view: RegisteredLayout,
+    ring: FloatArray,
+    along: FloatArray,
+    reach_ch: float,
+    config: AdjustConfig,
+) -> Iterable[tuple[int, FloatArray, float]]:
+    """What of one view lies on which wall of its room."""
+    offsets = view.boundary - view.camera
+    known = np.flatnonzero(np.isfinite(offsets[:, 0]))[:: config.stride]
+    if len(known) == 0:
+        return
+    offsets, sigmas = offsets[known], view.sigmas[known]
+    ranges = np.hypot(*offsets.T)
+    hits = first_hits(view.camera, offsets / ranges[:, None], ring)
+    near = np.abs(ranges - hits.range) * hits.sine < reach_ch
+    near &= hits.sine > np.sin(np.deg2rad(config.grazing_deg))
+    # What all columns of a panorama have in common is its factor, not their noise.
+    own = np.maximum(sigmas**2 - (config.common_share * ranges) ** 2, (_OWN * sigmas) ** 2)
+    for wall in np.unique(hits.edge[near]).tolist():
+        chosen = np.flatnonzero(near & (hits.edge == wall))
+        if len(chosen) * config.stride < config.min_columns:
+            continue
+        across = np.sqrt(own[chosen]) * hits.sine[chosen]
+        ends, sigma = _piece(offsets[chosen], along[wall], across, config)
+        yield wall, ends, sigma
+
+
+_OWN = 0.3
+"""At least this share of a column's sigma is its own."""
+
+
+def _piece(
+    points: FloatArray, along: FloatArray, sigma: FloatArray, config: AdjustConfig
+) -> tuple[FloatArray, float]:
+    """The line through a view's columns on a wall: two points of it with independent errors."""
+    outward = np.array([along[1], -along[0]])
+    at, off = points @ along, points @ outward
+    weight = 1.0 / sigma**2
+    turn, mean_at, mean_off, spread = 0.0, 0.0, 0.0, 0.0
+    for _ in range(3):
+        total = weight.sum()
+        mean_at, mean_off = (weight @ at) / total, (weight @ off) / total
+        spread = np.sqrt((weight @ (at - mean_at) ** 2) / total)
+        turn = (weight @ ((at - mean_at) * (off - mean_off))) / max(total * spread**2, 1e-12)
+        left = off - mean_off - turn * (at - mean_at)
+        weight = 1.0 / (sigma**2 * (1.0 + (left / (2.0 * sigma)) ** 2))
+    reach = np.array([-spread, spread])
+    ends = np.outer(mean_at + reach, along) + np.outer(mean_off + turn * reach, outward)
+    independent = max(1.0, len(points) * config.stride / config.correlation_columns)
+    return ends, float(np.sqrt(2.0 * np.mean(sigma**2) / independent))
+
+
+def _moved(state: FloatArray, walls: _Walls, step: FloatArray) -> tuple[FloatArray, _Walls]:
+    views = step[: state.size].reshape(-1, 4)
+    lines = step[state.size :].reshape(-1, 2)
+    moved = replace(walls, angle=walls.angle + lines[:, 0], offset=walls.offset + lines[:, 1])
+    return state + views, moved
+
+
+def _system(
+    state: FloatArray,
+    walls: _Walls,
+    walk: _Walk,
+    pieces: _Pieces,
+    multiple: float,
+    config: AdjustConfig,
+) -> _System:
+    """All residuals, linearised."""
+    system = _System(state.size + 2 * len(walls.angle))
+    _add_walls(system, state, walls, walk.cameras, pieces, config)
+    _add_odometry(system, state, walk, multiple, config)
+    return system
+
+
+class _System:
+    """Sparse normal equations, gathered residual by residual."""
+
+    def __init__(self, size: int) -> None:
+        self.size = size
+        self.cost = 0.0
+        self._rows: list[IntArray] = []
+        self._columns: list[IntArray] = []
+        self._values: list[FloatArray] = []
+        self._right = np.zeros(size)
+
+    def add(
+        self, columns: IntArray, jacobian: FloatArray, residual: FloatArray, cost: float
+    ) -> None:
+        """Adds N residuals.
+
+        Args:
+            columns: (N, K) unknowns that each depends on.
+            jacobian: (N, K) derivatives, over sigma.
+            residual: (N,) over sigma.
+            cost: minus twice their log-likelihood.
+        """
+        width = columns.shape[1]
+        self.cost += cost
+        self._rows.append(np.repeat(columns, width, axis=1).ravel())
+        self._columns.append(np.tile(columns, (1, width)).ravel())
+        self._values.append((jacobian[:, :, None] * jacobian[:, None, :]).ravel())
+        np.add.at(self._right, columns, -jacobian * residual[:, None])
+
+    def _factorised(self) -> Any:
+        rows, columns, values = (
+            np.concatenate(part) for part in (self._rows, self._columns, self._values)
+        )
+        every = np.arange(self.size)
+        damped = np.full(self.size, _DAMPING)
+        normal = coo_array(
+            (
+                np.concatenate([values, damped]),
+                (np.concatenate([rows, every]), np.concatenate([columns, every])),
+            ),
+            shape=(self.size, self.size),
+        ).tocsc()
+        return splu(normal, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+
+    def solve(self) -> FloatArray:
+        """The Gauss-Newton step."""
+        return np.asarray(self._factorised().solve(self._right))
+
+    def evidence(self) -> float:
+        """Log of the marginal likelihood by Laplace's approximation, but for a constant."""
+        spread = float(np.log(np.abs(self._factorised().U.diagonal())).sum())
+        return -(self.cost + spread) / 2
+
+
+_DAMPING = 1e-6
+
+
+def _add_walls(
+    system: _System,
+    state: FloatArray,
+    walls: _Walls,
+    cameras: FloatArray,
+    pieces: _Pieces,
+    config: AdjustConfig,
+) -> None:
+    view, wall = pieces.view, pieces.wall
+    c, s = np.cos(state[view, 2])[:, None], np.sin(state[view, 2])[:, None]
+    factor = np.exp(state[view, 3])[:, None]
+    x, y = pieces.points[..., 0], pieces.points[..., 1]
+    turned = factor[..., None] * np.stack([c * x - s * y, s * x + c * y], axis=-1)
+    place = (cameras[view] + state[view, :2] - walls.middle[wall])[:, None] + turned
+    normal = np.stack([np.cos(walls.angle[wall]), np.sin(walls.angle[wall])], axis=-1)[:, None]
+    across = np.stack([-normal[..., 1], normal[..., 0]], axis=-1)
+    residual = (normal * place).sum(axis=-1) - walls.offset[wall][:, None]
+    by_turn = (normal * np.stack([-turned[..., 1], turned[..., 0]], axis=-1)).sum(axis=-1)
+    by_factor = (normal * turned).sum(axis=-1)
+    by_angle = (across * place).sum(axis=-1)
+    ones = np.ones_like(by_turn)
+    jacobian = np.stack(
+        [normal[..., 0] * ones, normal[..., 1] * ones, by_turn, by_factor, by_angle, -ones],
+        axis=-1,
+    )
+    over = residual / pieces.sigma[:, None]
+    limit = config.robust_sigmas
+    weight = 1.0 / np.sqrt(1.0 + (over / limit) ** 2)
+    base = state.size
+    columns = np.concatenate(
+        [4 * view[:, None] + np.arange(4), base + 2 * wall[:, None] + np.arange(2)], axis=1
+    )
+    system.add(
+        np.repeat(columns, 2, axis=0),
+        ((weight / pieces.sigma[:, None])[..., None] * jacobian).reshape(-1, 6),
+        (weight * over).ravel(),
+        float((limit**2 * np.log1p((over / limit) ** 2)).sum()),
+    )
+
+
+def _add_odometry(
+    system: _System,
+    state: FloatArray,
+    walk: _Walk,
+    multiple: float,
+    config: AdjustConfig,
+) -> None:
+    count = len(state)
+    step = np.diff(walk.cameras, axis=0)
+    # A random walk: variances grow with the way.
+    way = np.sqrt(np.maximum(walk.steps, _SHORTEST_CH))
+    weight = 1.0 / (multiple * config.odometry_ch * way)
+    before, after = np.arange(count - 1), np.arange(1, count)
+    c, s = np.cos(state[:-1, 2]), np.sin(state[:-1, 2])
+    turned = np.stack([c * step[:, 0] - s * step[:, 1], s * step[:, 0] + c * step[:, 1]], axis=-1)
+    slip = state[1:, :2] - state[:-1, :2] - (turned - step)
+    by_turn = np.stack([turned[:, 1], -turned[:, 0]], axis=-1)
+    ones = np.ones(count - 1)
+    for k in (0, 1):
+        columns = np.stack([4 * before + k, 4 * after + k, 4 * before + 2], axis=1)
+        jacobian = np.stack([-ones, ones, by_turn[:, k]], axis=1)
+        _add(system, columns, weight[:, None] * jacobian, weight * slip[:, k])
+    weight = 1.0 / (multiple * np.deg2rad(config.odometry_deg) * way)
+    columns = np.stack([4 * before + 2, 4 * after + 2], axis=1)
+    jacobian = np.stack([-weight, weight], axis=1)
+    _add(system, columns, jacobian, weight * (state[1:, 2] - state[:-1, 2]))
+    factor = np.full((count, 1), 1.0 / config.factor_sigma)
+    every = np.arange(count)[:, None]
+    _add(system, 4 * every + 3, factor, state[:, 3] / config.factor_sigma)
+    first = np.full((3, 1), 1.0 / _FIRST)
+    _add(system, np.arange(3)[:, None], first, (state[0, :3] - walk.first) / _FIRST)
+
+
+def _add(system: _System, columns: IntArray, jacobian: FloatArray, residual: FloatArray) -> None:
+    system.add(columns, jacobian, residual, float(residual @ residual))
+
+
+_FIRST = 1e-4
+"""The first camera stays."""
+_SHORTEST_CH = 0.02
+"""Who turns on the spot errs as on so much way."""
