@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections import Counter
 from collections.abc import Sequence
 from dataclasses import replace
@@ -16,7 +17,7 @@ from panoplan.stages.plan.apertures import apertures, stretches
 from panoplan.stages.plan.floorplan import plan_rooms
 from panoplan.stages.plan.partition import partition
 from panoplan.types.events import Event, RoomShaped, RoomsRegrouped
-from panoplan.types.room import RoomDensity, RoomShape
+from panoplan.types.room import RoomDensity, RoomShape, WallStretch
 from panoplan.types.view import Correction, RegisteredLayout
 
 
@@ -39,12 +40,15 @@ def settle_around(state: State, index: int, config: Config) -> tuple[State, tupl
         or (other.level == left.level and rooms.overlap(left.density, other.density) > _TOUCHING)
     ]
     keyframes = _keyframes(state, near)
-    state, events = settle(state, near, config)
+    now = _regrouped(state, keyframes, config)
     if config.adjust.rounds:
-        state = _adjusted(state, keyframes, 0, config)
-        state, told = settle(state, _holding(state, keyframes), config)
-        events += told
-    return state, events
+        now, _ = _adjusted(now, keyframes, 0, config)
+        now = _regrouped(now, keyframes, config)
+    return _settled(state, now, keyframes, config)
+
+
+_TOUCHING = 0.05
+"""Rooms with less floor in common than this share of the smaller one's are not mixed up."""
 
 
 def settle_level(state: State, level: int, config: Config) -> tuple[State, tuple[Event, ...]]:
@@ -59,15 +63,43 @@ def settle_level(state: State, level: int, config: Config) -> tuple[State, tuple
         What is known now, and what happened.
     """
     there = [k for k, room in enumerate(state.rooms) if room.level == level]
-    if not any(state.rooms[k].stale for k in there):
+    if not there:
         return state, ()
     keyframes = _keyframes(state, there)
-    state, events = settle(state, there, config)
+    now = state
+    # Where all rooms have been left, their outlines are enough to begin with.
+    if any(state.rooms[k].shape is None for k in there) or not config.adjust.rounds:
+        now = _regrouped(now, keyframes, config)
     for number in range(config.adjust.rounds):
-        state = _adjusted(state, keyframes, number, config)
-        state, told = settle(state, _holding(state, keyframes), config)
-        events += told
-    return state, events
+        now, moved = _adjusted(now, keyframes, number, config)
+        if number and moved < _MOVED_CH:
+            break
+        now = _regrouped(now, keyframes, config)
+    return _settled(state, now, keyframes, config)
+
+
+_MOVED_CH = 0.003
+"""Corrections that move no camera and no wall by more than this, half a centimetre, are done."""
+
+
+def _settled(
+    before: State, now: State, keyframes: frozenset[int], config: Config
+) -> tuple[State, tuple[Event, ...]]:
+    """The rooms that hold these views as settled, the levels composed anew, and what changed."""
+    held = set(_holding(now, keyframes))
+    settled = tuple(
+        replace(room, stale=False, stretches=_stretches(now, room, config)) if k in held else room
+        for k, room in enumerate(now.rooms)
+    )
+    now = replace(now, rooms=settled)
+    now = replace(now, compositions=_composed(now, config))
+    return now, _told(before, now, keyframes)
+
+
+def _stretches(state: State, room: RoomState, config: Config) -> tuple[WallStretch, ...]:
+    assert room.shape is not None
+    views = [state.cameras[view.index].correction.apply(view) for view in room.views]
+    return stretches(room.shape, views, config.apertures)
 
 
 def _keyframes(state: State, chosen: Sequence[int]) -> frozenset[int]:
@@ -84,8 +116,14 @@ def _holding(state: State, keyframes: frozenset[int]) -> list[int]:
     ]
 
 
-def _adjusted(state: State, keyframes: frozenset[int], number: int, config: Config) -> State:
-    """Corrects the cameras of some rooms; the rooms are then to be settled again."""
+def _adjusted(
+    state: State, keyframes: frozenset[int], number: int, config: Config
+) -> tuple[State, float]:
+    """Corrects the cameras of some rooms, which are then to be settled again.
+
+    Returns:
+        What is known now, and how far the corrections moved a camera or a wall at most.
+    """
     assert state.scale is not None
     chosen = _holding(state, keyframes)
     views = _views(state, chosen)
@@ -104,15 +142,17 @@ def _adjusted(state: State, keyframes: frozenset[int], number: int, config: Conf
         config.adjust,
     )
     cameras = list(state.cameras)
-    for view, correction in zip(views, corrections, strict=True):
-        cameras[view.index] = replace(cameras[view.index], correction=correction)
-    return replace(
-        state,
-        cameras=tuple(cameras),
-        rooms=tuple(
-            replace(room, stale=True) if k in chosen else room for k, room in enumerate(state.rooms)
-        ),
-    )
+    moved = 0.0
+    for view, new in zip(views, corrections, strict=True):
+        old = cameras[view.index].correction
+        wall = abs(new.turn - old.turn) + abs(new.factor - old.factor)
+        moved = max(moved, math.dist(new.shift, old.shift), wall * _WALL_CH)
+        cameras[view.index] = replace(cameras[view.index], correction=new)
+    return replace(state, cameras=tuple(cameras)), moved
+
+
+_WALL_CH = 2.0
+"""Distance of a usual wall from a camera."""
 
 
 def _views(state: State, chosen: Sequence[int]) -> list[RegisteredLayout]:
@@ -131,7 +171,8 @@ def carried(state: State, index: int) -> tuple[PlacedCamera, ...]:
     Returns:
         All cameras; the new one moves rigidly with the one before.
     """
-    before = next((c for c in reversed(state.cameras[:index]) if c.room is not None), None)
+    placed_before = (k for k in range(index - 1, -1, -1) if state.cameras[k].room is not None)
+    before = next((state.cameras[k] for k in placed_before), None)
     if before is None or before.correction == Correction():
         return state.cameras
     assert state.scale is not None
@@ -144,57 +185,40 @@ def carried(state: State, index: int) -> tuple[PlacedCamera, ...]:
     return (*state.cameras[:index], placed, *state.cameras[index + 1 :])
 
 
-_TOUCHING = 0.05
-"""Rooms with less floor in common than this share of the smaller one's are not mixed up."""
-
-
-def settle(state: State, chosen: Sequence[int], config: Config) -> tuple[State, tuple[Event, ...]]:
-    """Tells some rooms' views apart anew and shapes the rooms that they are of.
+def _regrouped(state: State, keyframes: frozenset[int], config: Config) -> State:
+    """Tells the views of some rooms apart anew and shapes the rooms that they are of.
 
     A room that comes out keeps the number of the room that most of its views were in; where two
     claim one number, the one with more of its views has it, the other gets a new one.
-
-    Args:
-        state: what is known.
-        chosen: indices of the rooms in `state.rooms`, all of one level.
-        config: settings.
-
-    Returns:
-        What is known now, and what happened.
     """
-    if not any(state.rooms[k].stale for k in chosen):
-        return state, ()
+    chosen = _holding(state, keyframes)
     before = {view.index: state.rooms[k].number for k in chosen for view in state.rooms[k].views}
     raw = _views(state, chosen)
     views = [state.cameras[view.index].correction.apply(view) for view in raw]
     planned = plan_rooms(views, config)
-    members = [[views[k].index for k in room.members] for room in planned]
     used = max(room.number for room in state.rooms)
-    numbers = _numbers([[before[k] for k in group] for group in members], used)
+    claims = [[before[raw[k].index] for k in room.members] for room in planned]
     old = {state.rooms[k].number: state.rooms[k] for k in chosen}
     level = state.rooms[chosen[0]].level
     made = []
-    for room, number in zip(planned, numbers, strict=True):
+    for room, number in zip(planned, _numbers(claims, used), strict=True):
         own = sorted(room.members)
-        found = stretches(room.shape, [views[k] for k in own], config.apertures)
-        same = old.get(number)
-        if same is not None and [v.index for v in same.views] == [raw[k].index for k in own]:
-            same = replace(same, shape=room.shape, stretches=found, stale=False)
-        else:
-            density = _density([views[k] for k in own], config)
-            same = RoomState(
+        was = old.get(number)
+        if was is not None and [view.index for view in was.views] == [raw[k].index for k in own]:
+            made.append(replace(was, shape=room.shape))
+            continue
+        made.append(
+            RoomState(
                 number,
-                density,
+                _density([views[k] for k in own], config),
                 (),
                 (),
                 views=tuple(raw[k] for k in own),
                 level=level,
                 shape=room.shape,
-                stretches=found,
-                stale=False,
-                away=-1 if same is None else same.away,
+                away=-1 if was is None else was.away,
             )
-        made.append(same)
+        )
     after = {view.index: room.number for room in made for view in room.views}
     current = None if state.current is None else state.rooms[state.current].number
     if current in old:
@@ -202,7 +226,7 @@ def settle(state: State, chosen: Sequence[int], config: Config) -> tuple[State, 
         current = after[max(k for k, number in before.items() if number == current)]
     kept = [room for k, room in enumerate(state.rooms) if k not in chosen]
     together = tuple(sorted([*kept, *made], key=lambda room: room.number))
-    changed = replace(
+    return replace(
         state,
         rooms=together,
         current=next((k for k, room in enumerate(together) if room.number == current), None),
@@ -211,8 +235,6 @@ def settle(state: State, chosen: Sequence[int], config: Config) -> tuple[State, 
             for k, camera in enumerate(state.cameras)
         ),
     )
-    changed = replace(changed, compositions=_composed(changed, config))
-    return changed, _told(before, after, made, old)
 
 
 def _composed(state: State, config: Config) -> tuple[Composition, ...]:
@@ -262,14 +284,12 @@ def _density(views: Sequence[RegisteredLayout], config: Config) -> RoomDensity:
     return density
 
 
-def _told(
-    before: dict[int, int],
-    after: dict[int, int],
-    made: Sequence[RoomState],
-    old: dict[int, RoomState],
-) -> tuple[Event, ...]:
+def _told(before: State, now: State, keyframes: frozenset[int]) -> tuple[Event, ...]:
+    """What changed in the rooms that hold some views."""
     events: list[Event] = []
-    moved = sum(before[k] != after[k] for k in before)
+    moved = sum(before.cameras[k].room != now.cameras[k].room for k in keyframes)
+    made = [now.rooms[k] for k in _holding(now, keyframes)]
+    old = {before.rooms[k].number: before.rooms[k] for k in _holding(before, keyframes)}
     if moved:
         numbers = {room.number for room in made}
         events.append(
@@ -282,13 +302,17 @@ def _told(
     for room in made:
         assert room.shape is not None
         was = old[room.number].shape if room.number in old else None
-        if was is not None and _same_outline(was, room.shape):
-            continue
-        events.append(RoomShaped(room_id(room.number), room.shape.polygon, room.shape.failure))
+        if was is None or not _same_outline(was, room.shape):
+            events.append(RoomShaped(room_id(room.number), room.shape.polygon, room.shape.failure))
     return tuple(events)
 
 
 def _same_outline(one: RoomShape, other: RoomShape) -> bool:
+    """Whether two outlines differ by less than what is told."""
     if one.polygon is None or other.polygon is None:
         return one.polygon is other.polygon and one.failure == other.failure
-    return np.array_equal(one.polygon, other.polygon)
+    if one.polygon.shape != other.polygon.shape:
+        return False
+    first = int(np.argmin(np.hypot(*(other.polygon - one.polygon[0]).T)))
+    apart = np.roll(other.polygon, -first, axis=0) - one.polygon
+    return bool(np.abs(apart).max() < _MOVED_CH)

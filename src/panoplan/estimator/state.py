@@ -125,6 +125,7 @@ class State:
     Attributes:
         walk: what was known before.
         seen: number of keyframes fed.
+        finished: number of them when the walk was last ended.
         frame: where the walk frame lies; None before the first keyframe.
         waiting: layouts that wait for the scale.
         estimates: scales of the warm-up so far, for the test whether they have settled.
@@ -144,6 +145,7 @@ class State:
 
     walk: Walk
     seen: int = 0
+    finished: int = 0
     frame: WalkFrame | None = None
     waiting: tuple[CastLayout, ...] = ()
     estimates: tuple[float, ...] = ()

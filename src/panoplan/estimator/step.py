@@ -91,10 +91,12 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
         state, told = _arrive(state, config)
         events += told
     if config.shape.method == "fusion":
+        if state.finished == state.seen:
+            return state, tuple(events)
         for level in range(len(state.levels)):
             state, told = settle_level(state, level, config)
             events += told
-        return state, tuple(events)
+        return replace(state, finished=state.seen), tuple(events)
     state, joined = _absorb(state, config)
     events += joined
     for index in range(len(state.rooms)):

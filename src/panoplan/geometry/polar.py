@@ -166,19 +166,42 @@ def signed_distance_sums(
 
 
 @njit(cache=True)
+def _heading(x, y):
+    """arctan2(x, y) within 1e-5 rad, several times faster.
+
+    Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.47.
+    """
+    across, along = abs(x), abs(y)
+    most = max(across, along)
+    if most == 0.0:
+        return 0.0
+    z = min(across, along) / most
+    q = z * z
+    angle = z * (0.9998660 + q * (-0.3302995 + q * (0.1801410 + q * (-0.0851330 + q * 0.0208351))))
+    if across > along:
+        angle = 0.5 * np.pi - angle
+    if y < 0:
+        angle = np.pi - angle
+    return -angle if x < 0 else angle
+
+
+@njit(cache=True)
 def _signed_distance_sums(
     cameras, profiles, sigmas, truncation, blur, beyond_weight, cell, i0, j0, total, weight
 ):
     bins = profiles.shape[1]
+    per_rad = bins / (2 * np.pi)
     for v in range(cameras.shape[0]):
         for i in range(total.shape[0]):
             x = (i0 + i + 0.5) * cell - cameras[v, 0]
             for j in range(total.shape[1]):
                 y = (j0 + j + 0.5) * cell - cameras[v, 1]
-                place = (np.arctan2(x, y) + np.pi) * bins / (2 * np.pi) - 0.5
-                low = int(np.floor(place))
-                share = place - low
-                left, right = low % bins, (low + 1) % bins
+                place = (_heading(x, y) + np.pi) * per_rad + 0.5
+                right = int(place)
+                share = place - right
+                left = right - 1 if right > 0 else bins - 1
+                if right >= bins:
+                    right = 0
                 near = left if share < 0.5 else right
                 reach = profiles[v, near]
                 if np.isnan(reach):
@@ -317,7 +340,7 @@ def _fill_words(cameras, profiles, radius, cell, low, high, starts, words):
             x = (i + 0.5) * cell - cameras[v, 0]
             for j in range(64 * low[v, 1], 64 * high[v, 1]):
                 y = (j + 0.5) * cell - cameras[v, 1]
-                r = profiles[v, int((np.arctan2(x, y) + np.pi) * bins / (2 * np.pi)) % bins]
+                r = profiles[v, int((_heading(x, y) + np.pi) * bins / (2 * np.pi)) % bins]
                 if x * x + y * y < min(r, radius) ** 2:
                     at = starts[v] + (i - low[v, 0]) * width + (j // 64 - low[v, 1])
                     words[at] |= np.uint64(1) << np.uint64(j % 64)
