@@ -812,6 +812,13 @@ class AdjustConfig:
     stride: int = _setting(
         4, "Every so many columns are used; neighbours err alike.", low=1, high=64
     )
+    min_views: int = _setting(
+        4,
+        "Fewer views of a room that is left are not adjusted by themselves, only with all others "
+        "at the end: they hardly tell how far the odometry is off.",
+        low=2,
+        high=1000,
+    )
     reach_ch: float = _setting(
         0.3,
         "Columns this near to a wall take part: a drift of half a metre.",

@@ -64,7 +64,7 @@ def assemble(state: State, config: Config) -> FloorPlan:
             members[camera.room].append(camera)
     composed = {
         number: shape
-        for level in state.compositions
+        for level in state.compositions or ()
         for number, shape in zip(level.numbers, level.shapes, strict=True)
     }
     rooms: dict[int, Room] = {}
@@ -119,7 +119,7 @@ def _joints(
 
     shared: list[SharedWall] = []
     found: dict[ApertureKind, list[Aperture]] = {"door": [], "opening": [], "window": []}
-    for level in state.compositions:
+    for level in state.compositions or ():
         numbers = level.numbers
         for face in level.facings:
             of = [numbers[k] for k in face.rooms]

@@ -41,7 +41,7 @@ def settle_around(state: State, index: int, config: Config) -> tuple[State, tupl
     ]
     keyframes = _keyframes(state, near)
     now = _regrouped(state, keyframes, config)
-    if config.adjust.rounds:
+    if config.adjust.rounds and len(keyframes) >= config.adjust.min_views:
         now, _ = _adjusted(now, keyframes, 0, config)
         now = _regrouped(now, keyframes, config)
     return _settled(state, now, keyframes, config)
@@ -67,9 +67,10 @@ def settle_level(state: State, level: int, config: Config) -> tuple[State, tuple
         return state, ()
     keyframes = _keyframes(state, there)
     now = state
-    # Where all rooms have been left, their outlines are enough to begin with.
-    if any(state.rooms[k].shape is None for k in there) or not config.adjust.rounds:
-        now = _regrouped(now, keyframes, config)
+    # The outlines of rooms that have been left are enough to begin with.
+    begun = there if not config.adjust.rounds else [k for k in there if state.rooms[k].stale]
+    if begun:
+        now = _regrouped(now, _keyframes(state, begun), config)
     for number in range(config.adjust.rounds):
         now, moved = _adjusted(now, keyframes, number, config)
         if number and moved < _MOVED_CH:
@@ -85,14 +86,13 @@ _MOVED_CH = 0.003
 def _settled(
     before: State, now: State, keyframes: frozenset[int], config: Config
 ) -> tuple[State, tuple[Event, ...]]:
-    """The rooms that hold these views as settled, the levels composed anew, and what changed."""
+    """The rooms that hold these views as settled, the levels to be composed; what changed."""
     held = set(_holding(now, keyframes))
     settled = tuple(
         replace(room, stale=False, stretches=_stretches(now, room, config)) if k in held else room
         for k, room in enumerate(now.rooms)
     )
-    now = replace(now, rooms=settled)
-    now = replace(now, compositions=_composed(now, config))
+    now = replace(now, rooms=settled, compositions=None)
     return now, _told(before, now, keyframes)
 
 
@@ -237,8 +237,18 @@ def _regrouped(state: State, keyframes: frozenset[int], config: Config) -> State
     )
 
 
-def _composed(state: State, config: Config) -> tuple[Composition, ...]:
-    """The plan of each level."""
+def compose(state: State, config: Config) -> State:
+    """Makes the rooms of each level one plan, where they were settled since that was last done.
+
+    Args:
+        state: what is known.
+        config: settings.
+
+    Returns:
+        What is known now.
+    """
+    if state.compositions is not None:
+        return state
     out = []
     for level in range(len(state.levels)):
         there = [room for room in state.rooms if room.level == level and room.shape is not None]
@@ -255,7 +265,7 @@ def _composed(state: State, config: Config) -> tuple[Composition, ...]:
             config.apertures,
         )
         out.append(Composition(tuple(room.number for room in there), shapes, facings, found))
-    return tuple(out)
+    return replace(state, compositions=tuple(out))
 
 
 def _numbers(groups: Sequence[Sequence[int]], used: int) -> list[int]:

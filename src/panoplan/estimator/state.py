@@ -138,7 +138,8 @@ class State:
         median_height: of the warm-up's cameras, in heights of the first.
         rooms: by number.
         current: index into `rooms` of the room last assigned.
-        compositions: the plan of each level as last settled; empty where iSPA makes the shapes.
+        compositions: the plan of each level as last settled, None where it is to be made anew;
+            empty where iSPA makes the shapes.
         cameras: every keyframe fed, in order.
         skipped: what was left out.
     """
@@ -158,6 +159,6 @@ class State:
     median_height: float = 1.0
     rooms: tuple[RoomState, ...] = ()
     current: int | None = None
-    compositions: tuple[Composition, ...] = ()
+    compositions: tuple[Composition, ...] | None = ()
     cameras: tuple[PlacedCamera, ...] = ()
     skipped: tuple[Skipped, ...] = ()

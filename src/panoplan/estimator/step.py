@@ -9,7 +9,7 @@ import numpy as np
 
 from panoplan.config import Config
 from panoplan.errors import ConfigError
-from panoplan.estimator.settle import carried, settle_around, settle_level
+from panoplan.estimator.settle import carried, compose, settle_around, settle_level
 from panoplan.estimator.state import PlacedCamera, RoomState, State, WalkFrame, room_id
 from panoplan.geometry.rigid import heading_of, turn
 from panoplan.stages import orientation, planes, rooms, scale
@@ -70,11 +70,12 @@ def step(state: State, keyframe: Keyframe, config: Config) -> tuple[State, tuple
         state = replace(state, skipped=(*state.skipped, skipped))
         return state, (KeyframeSkipped(keyframe.id, reason),)
     if state.scale is not None:
-        return _on_level(state, view, config)
+        state, events = _on_level(state, view, config)
+        return compose(state, config), events
     state = replace(state, waiting=(*state.waiting, view))
     waiting: Event = KeyframeWaiting(keyframe.id, len(state.waiting))
     state, frozen = _warm_up(state, config)
-    return state, (waiting, *frozen)
+    return compose(state, config), (waiting, *frozen)
 
 
 def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
@@ -96,7 +97,7 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
         for level in range(len(state.levels)):
             state, told = settle_level(state, level, config)
             events += told
-        return replace(state, finished=state.seen), tuple(events)
+        return compose(replace(state, finished=state.seen), config), tuple(events)
     state, joined = _absorb(state, config)
     events += joined
     for index in range(len(state.rooms)):

@@ -152,9 +152,8 @@ def signed_distance_sums(
     _signed_distance_sums(
         cameras,
         profiles,
-        sigmas,
+        1.0 / (sigmas**2 + blur * blur),
         truncation,
-        blur,
         beyond_weight,
         cell,
         first_cell[0],
@@ -187,7 +186,7 @@ def _heading(x, y):
 
 @njit(cache=True)
 def _signed_distance_sums(
-    cameras, profiles, sigmas, truncation, blur, beyond_weight, cell, i0, j0, total, weight
+    cameras, profiles, weights, truncation, beyond_weight, cell, i0, j0, total, weight
 ):
     bins = profiles.shape[1]
     per_rad = bins / (2 * np.pi)
@@ -200,8 +199,7 @@ def _signed_distance_sums(
                 right = int(place)
                 share = place - right
                 left = right - 1 if right > 0 else bins - 1
-                if right >= bins:
-                    right = 0
+                right = right if right < bins else 0
                 near = left if share < 0.5 else right
                 reach = profiles[v, near]
                 if np.isnan(reach):
@@ -213,7 +211,7 @@ def _signed_distance_sums(
                     # Interpolated only along one wall, not over a step from one to another.
                     reach = profiles[v, left] * (1 - share) + profiles[v, right] * share
                 distance = reach - np.sqrt(x * x + y * y)
-                w = 1.0 / (sigmas[v, near] ** 2 + blur * blur)
+                w = weights[v, near]
                 if distance < -truncation:
                     w *= beyond_weight
                     distance = -truncation
