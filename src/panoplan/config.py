@@ -859,6 +859,14 @@ class AdjustConfig:
     robust_sigmas: float = _setting(
         2.0, "Residuals beyond so many sigmas pull less and less.", low=0.1, high=100.0
     )
+    faces_deg: float = _setting(
+        0.3,
+        "Standard deviation of the angle between the two faces of a wall; robust, as what faces "
+        "may as well be two walls.",
+        unit="deg",
+        low=1e-3,
+        high=90.0,
+    )
     odometry_ch: float = _setting(
         0.02,
         "Standard deviation of the odometry's position after one camera height of way; it grows "

@@ -15,7 +15,7 @@ from panoplan.stages import rooms
 from panoplan.stages.plan.adjust import adjust
 from panoplan.stages.plan.apertures import apertures, stretches
 from panoplan.stages.plan.floorplan import plan_rooms
-from panoplan.stages.plan.partition import partition
+from panoplan.stages.plan.partition import facing_walls, partition
 from panoplan.types.events import Event, RoomShaped, RoomsRegrouped
 from panoplan.types.room import RoomDensity, RoomShape, WallStretch
 from panoplan.types.view import Correction, RegisteredLayout
@@ -129,15 +129,17 @@ def _adjusted(
     views = _views(state, chosen)
     place = {view.index: k for k, view in enumerate(views)}
     ch_per_su = state.scale.ch_per_su or 0.0
+    outlined = [
+        ([place[view.index] for view in state.rooms[k].views], shape.polygon)
+        for k in chosen
+        if (shape := state.rooms[k].shape) is not None and shape.polygon is not None
+    ]
     corrections = adjust(
         views,
         ch_per_su * np.array([state.cameras[view.index].way_su for view in views]),
-        [
-            ([place[view.index] for view in state.rooms[k].views], shape.polygon)
-            for k in chosen
-            if (shape := state.rooms[k].shape) is not None and shape.polygon is not None
-        ],
+        outlined,
         [state.cameras[view.index].correction for view in views],
+        facing_walls([ring for _, ring in outlined], config.partition),
         config.adjust.reach_ch / (1 + number),
         config.adjust,
     )

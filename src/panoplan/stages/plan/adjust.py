@@ -11,6 +11,7 @@ from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
 from panoplan.config import AdjustConfig
+from panoplan.geometry.angles import line_difference
 from panoplan.geometry.hits import edge_directions, first_hits
 from panoplan.geometry.rigid import turn
 from panoplan.types.arrays import FloatArray, IntArray
@@ -57,6 +58,7 @@ def adjust(
     ways: FloatArray,
     rooms: Sequence[tuple[Sequence[int], FloatArray]],
     start: Sequence[Correction],
+    faces: tuple[IntArray, IntArray],
     reach_ch: float,
     config: AdjustConfig,
 ) -> tuple[Correction, ...]:
@@ -73,6 +75,8 @@ def adjust(
         ways: (V,) way gone to each, camera heights, increasing.
         rooms: indices of the views of each room, and its outline (N, 2), as found after `start`.
         start: corrections to begin with; that of the first view is kept.
+        faces: indices of walls, counted through room by room, that may be the two faces of one:
+            they are parallel, robustly.
         reach_ch: columns this near to a wall take part.
         config: settings.
 
@@ -90,9 +94,10 @@ def adjust(
     best, chosen, falling = -np.inf, state, 0
     for multiple in config.odometry_multiples:
         for _ in range(config.iterations):
-            system = _system(state, walls, walk, pieces, multiple, config)
+            system = _system(state, walls, walk, pieces, faces, multiple, config)
             state, walls = _moved(state, walls, system.solve())
-        evidence = _system(state, walls, walk, pieces, multiple, config).evidence()
+        system = _system(state, walls, walk, pieces, faces, multiple, config)
+        evidence = system.evidence()
         evidence -= 3 * (count - 1) * np.log(multiple)
         if evidence > best:
             best, chosen, falling = evidence, state, 0
@@ -213,6 +218,7 @@ def _system(
     walls: _Walls,
     walk: _Walk,
     pieces: _Pieces,
+    faces: tuple[IntArray, IntArray],
     multiple: float,
     config: AdjustConfig,
 ) -> _System:
@@ -220,6 +226,7 @@ def _system(
     system = _System(state.size + 2 * len(walls.angle))
     _add_walls(system, state, walls, walk.cameras, pieces, config)
     _add_odometry(system, state, walk, multiple, config)
+    _add_faces(system, state.size, walls, faces, config)
     return system
 
 
@@ -351,6 +358,23 @@ def _add_odometry(
     _add(system, 4 * every + 3, factor, state[:, 3] / config.factor_sigma)
     first = np.full((3, 1), 1.0 / _FIRST)
     _add(system, np.arange(3)[:, None], first, (state[0, :3] - walk.first) / _FIRST)
+
+
+def _add_faces(
+    system: _System,
+    first: int,
+    walls: _Walls,
+    faces: tuple[IntArray, IntArray],
+    config: AdjustConfig,
+) -> None:
+    one, other = faces
+    sigma, limit = np.deg2rad(config.faces_deg), config.robust_sigmas
+    over = line_difference(walls.angle[one], walls.angle[other]) / sigma
+    weight = 1.0 / np.sqrt(1.0 + (over / limit) ** 2)
+    columns = first + 2 * np.stack([one, other], axis=1)
+    jacobian = np.stack([weight, -weight], axis=1) / sigma
+    cost = float((limit**2 * np.log1p((over / limit) ** 2)).sum())
+    system.add(columns, jacobian, weight * over, cost)
 
 
 def _add(system: _System, columns: IntArray, jacobian: FloatArray, residual: FloatArray) -> None:

@@ -66,6 +66,21 @@ def partition(
     return tuple(apart), _shared(pairs, edges, assumed, config)
 
 
+def facing_walls(rings: Sequence[FloatArray], config: PartitionConfig) -> tuple[IntArray, IntArray]:
+    """Walls of different rooms that may be the faces of one.
+
+    Args:
+        rings: (N, 2) outlines.
+        config: settings.
+
+    Returns:
+        Indices of the first and of the second wall of each pair, all walls counted through, ring
+        by ring.
+    """
+    pairs = _facing(_edges([RoomShape(ring, None) for ring in rings]), config)
+    return pairs.one, pairs.other
+
+
 @dataclass(frozen=True, eq=False)
 class _Edges:
     """All walls of all rooms, array by array."""
