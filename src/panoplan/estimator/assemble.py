@@ -11,6 +11,7 @@ from panoplan import __version__
 from panoplan.config import Config, as_dict
 from panoplan.estimator.state import PlacedCamera, RoomState, State, room_id
 from panoplan.geometry.angles import line_angle, wrapped
+from panoplan.geometry.hits import edge_directions
 from panoplan.stages import orientation
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import (
@@ -71,7 +72,16 @@ def assemble(state: State, config: Config) -> FloorPlan:
     walls = 0
     for room in state.rooms:
         shaped = replace(room, shape=composed.get(room.number, room.shape))
-        made = _room(shaped, members[room.number], config, to_plan, length, walls)
+        made = _room(
+            shaped,
+            members[room.number],
+            config,
+            to_plan,
+            length,
+            ch_per_su,
+            scale.sigma or 0.0,
+            walls,
+        )
         walls += len(made.walls)
         rooms[room.number] = made
     shared, found = _joints(state, rooms, composed, to_plan, length)
@@ -163,6 +173,8 @@ def _room(
     config: Config,
     to_plan: Callable[[FloatArray], FloatArray],
     length: float,
+    ch_per_su: float,
+    scale_sigma: float,
     walls_before: int,
 ) -> Room:
     shape = room.shape or RoomShape(None, "the camera has not left it yet")
@@ -190,7 +202,8 @@ def _room(
     ring = to_plan(np.roll(shape.polygon, -first, axis=0))
     sigmas: list[float | None] = [None] * len(ring)
     if shape.sigmas is not None:
-        told = length * np.roll(shape.sigmas, -first)
+        placed = _place_sigmas(shape.polygon, cameras, ch_per_su, scale_sigma)
+        told = length * np.roll(np.hypot(shape.sigmas, placed), -first)
         sigmas = [float(s) if np.isfinite(s) else None for s in told]
     walls = tuple(
         Wall(f"wall_{walls_before + k + 1:02d}", ring[k], ring[(k + 1) % len(ring)], sigma)
@@ -198,6 +211,26 @@ def _room(
     )
     holes = tuple(to_plan(hole) for hole in shape.holes)
     return replace(made, polygon=ring, walls=walls, holes=holes)
+
+
+def _place_sigmas(
+    polygon: FloatArray, cameras: Sequence[PlacedCamera], ch_per_su: float, scale_sigma: float
+) -> FloatArray:
+    """(N,) across each wall, of where the room lies: by its cameras and by the scale."""
+    along, _ = edge_directions(polygon)
+    outward = np.stack([along[:, 1], -along[:, 0]], axis=-1)
+    middle = (polygon + np.roll(polygon, -1, axis=0)) / 2
+    # The walk frame begins at the first camera, from where an error of scale stretches it.
+    variance = (scale_sigma * (middle * outward).sum(axis=1)) ** 2
+    known = [camera for camera in cameras if camera.covariance is not None]
+    if known:
+        camera = known[len(known) // 2]
+        assert camera.covariance is not None
+        arm = middle - ch_per_su * camera.position_su - camera.correction.shift
+        turning = outward[:, 1] * arm[:, 0] - outward[:, 0] * arm[:, 1]
+        moves = np.column_stack([outward, turning])
+        variance = variance + np.einsum("ni,ij,nj->n", moves, camera.covariance, moves)
+    return np.asarray(np.sqrt(variance))
 
 
 def _ceiling(cameras: Sequence[PlacedCamera], length: float) -> float | None:

@@ -134,7 +134,7 @@ def _adjusted(
         for k in chosen
         if (shape := state.rooms[k].shape) is not None and shape.polygon is not None
     ]
-    corrections = adjust(
+    found = adjust(
         views,
         ch_per_su * np.array([state.cameras[view.index].way_su for view in views]),
         outlined,
@@ -145,11 +145,12 @@ def _adjusted(
     )
     cameras = list(state.cameras)
     moved = 0.0
-    for view, new in zip(views, corrections, strict=True):
+    for view, new in zip(views, found.corrections, strict=True):
         old = cameras[view.index].correction
         wall = abs(new.turn - old.turn) + abs(new.factor - old.factor)
         moved = max(moved, math.dist(new.shift, old.shift), wall * _WALL_CH)
-        cameras[view.index] = replace(cameras[view.index], correction=new)
+        covariance = found.covariances.get(place[view.index])
+        cameras[view.index] = replace(cameras[view.index], correction=new, covariance=covariance)
     return replace(state, cameras=tuple(cameras)), moved
 
 

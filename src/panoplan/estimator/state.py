@@ -60,6 +60,8 @@ class PlacedCamera:
         ceiling: its height above the floor in camera heights, NaN where unknown.
         way_su: way gone until here, trajectory units.
         correction: of what the odometry says, by bundle adjustment.
+        covariance: (3, 3) of x, y and turn after it, camera heights and rad, for one camera a
+            room; else None.
     """
 
     keyframe: str
@@ -69,6 +71,7 @@ class PlacedCamera:
     ceiling: float = math.nan
     way_su: float = 0.0
     correction: Correction = field(default_factory=Correction)
+    covariance: FloatArray | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,6 +19,20 @@ from panoplan.types.view import Correction, RegisteredLayout
 
 
 @dataclass(frozen=True, eq=False)
+class Adjusted:
+    """What an adjustment found.
+
+    Attributes:
+        corrections: of each view.
+        covariances: (3, 3) of (x, y, turn) of the middle view of each room, by index of the view:
+            how well it is known where the room lies.
+    """
+
+    corrections: tuple[Correction, ...]
+    covariances: dict[int, FloatArray]
+
+
+@dataclass(frozen=True, eq=False)
 class _Pieces:
     """Straight pieces of views' boundaries that lie on walls, two points each.
 
@@ -61,7 +75,7 @@ def adjust(
     faces: tuple[IntArray, IntArray],
     reach_ch: float,
     config: AdjustConfig,
-) -> tuple[Correction, ...]:
+) -> Adjusted:
     """Moves cameras and walls until the layouts agree with one another and with the odometry.
 
     Unknown are each camera's position, heading and the factor of its ranges, and the line of each
@@ -81,17 +95,18 @@ def adjust(
         config: settings.
 
     Returns:
-        The corrections.
+        The corrections, and how sure they are.
 
     Source: docs/deviations.md, "Past the paper".
     """
     pieces, walls = _pieces(views, rooms, start, reach_ch, config)
     count = len(views)
     if len(pieces.view) == 0 or count < 2:
-        return tuple(start)
+        return Adjusted(tuple(start), {})
     state = np.array([(*c.shift, c.turn, np.log(c.factor)) for c in start])
     walk = _Walk(np.array([view.camera for view in views]), np.diff(ways), state[0, :3].copy())
-    best, chosen, falling = -np.inf, state, 0
+    best, falling = -np.inf, 0
+    chosen, found = state, None
     for multiple in config.odometry_multiples:
         for _ in range(config.iterations):
             system = _system(state, walls, walk, pieces, faces, multiple, config)
@@ -100,14 +115,20 @@ def adjust(
         evidence = system.evidence()
         evidence -= 3 * (count - 1) * np.log(multiple)
         if evidence > best:
-            best, chosen, falling = evidence, state, 0
+            best, falling = evidence, 0
+            chosen, found = state, system
         else:
             falling += 1
         if falling == _FALLING:
             break
-    return tuple(
-        Correction((float(x), float(y)), float(turned), float(np.exp(factor)))
-        for x, y, turned, factor in chosen
+    assert found is not None
+    middles = sorted({members[len(members) // 2] for members, _ in rooms if len(members)})
+    return Adjusted(
+        tuple(
+            Correction((float(x), float(y)), float(turned), float(np.exp(factor)))
+            for x, y, turned, factor in chosen
+        ),
+        dict(zip(middles, found.covariances(4 * np.array(middles)), strict=True)),
     )
 
 
@@ -258,6 +279,14 @@ class _System:
         self._columns.append(np.tile(columns, (1, width)).ravel())
         self._values.append((jacobian[:, :, None] * jacobian[:, None, :]).ravel())
         np.add.at(self._right, columns, -jacobian * residual[:, None])
+
+    def covariances(self, firsts: IntArray) -> list[FloatArray]:
+        """(3, 3) of each three unknowns in a row, by the first of them."""
+        wanted = firsts[:, None] + np.arange(3)
+        right = np.zeros((self.size, wanted.size))
+        right[wanted.ravel(), np.arange(wanted.size)] = 1.0
+        columns = self._factorised().solve(right).reshape(self.size, *wanted.shape)
+        return [columns[rows, k] for k, rows in enumerate(wanted)]
 
     def _factorised(self) -> Any:
         rows, columns, values = (

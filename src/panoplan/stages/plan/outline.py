@@ -215,18 +215,25 @@ def _fit(wall: WallLine, columns: _Columns, reach: float, config: OutlineConfig)
     middle = wall.middle + outward * (mean_off - turn * mean_at)
     independent = np.maximum(1.0, count / config.correlation_columns)
     information = np.bincount(view, weight) * independent
+    # Where views differ by more than their sigmas, the wall is known less well, and better where
+    # by less: Birge's ratio, with a few views' worth of trust in the sigmas.
+    told = np.bincount(view, weight * (off - mean_off - turn * (at - mean_at))) / np.bincount(
+        view, weight
+    )
+    ratio = (_TRUST + float(information @ told**2)) / (_TRUST + len(count) - 1)
     return replace(
         wall,
         middle=middle,
         along=along,
         columns=len(chosen),
-        sigma=float(1.0 / np.sqrt(information.sum())),
+        sigma=float(np.sqrt(ratio / information.sum())),
     )
 
 
 _CORNER_MARGIN_CH, _CORNER_MARGIN_SHARE = 0.07, 0.15
 """Columns this near to a wall's ends may be of its neighbours."""
 _FEWEST_COLUMNS = 8
+_TRUST = 4.0
 _FINEST_CH = 0.004
 
 
