@@ -876,6 +876,13 @@ class AdjustConfig:
         high=1.0,
     )
     odometry_deg: float = _setting(0.1, "The same of its heading.", unit="deg", low=1e-4, high=90.0)
+    sigma_factor: float = _setting(
+        1.5,
+        "Factor on the standard deviations of where rooms lie: odometry errs alike over many "
+        "steps, which the adjustment takes for independent. Measured on simulated flats.",
+        low=0.1,
+        high=10.0,
+    )
     odometry_multiples: tuple[float, ...] = _setting(
         (0.02, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0),
         "Multiples of the odometry's sigmas that are tried, increasing; the one with most "

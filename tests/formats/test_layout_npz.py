@@ -175,3 +175,41 @@ def test_broken_headers(header):
     data = b"\x93NUMPY\x01\x00" + len(header).to_bytes(2, "little") + header.encode() + b"\0" * 64
     with pytest.raises(InputError, match=r"^a: found"):
         parse_npy(data, "a")
+
+
+def test_spans_and_ceiling_at_corners(tmp_path):
+    np.savez(
+        tmp_path / "a.npz",
+        floor_boundary=FLOOR,
+        door_cols=np.array([[3.0, 8.0], [30.0, 2.0]]),
+        window_cols=np.empty((0, 2)),
+        ceil_corner_u=np.array([4.4, 20.0]),
+        ceil_corner_phi=np.array([0.5, 0.6]),
+    )
+    layout = read_layout_npz(tmp_path / "a.npz")
+    np.testing.assert_array_equal(layout.spans.doors, [[3, 8], [30, 2]])
+    assert layout.spans.openings.shape == (0, 2)
+    assert np.flatnonzero(np.isfinite(layout.ceiling_boundary)).tolist() == [4, 20]
+    write_layout_npz(tmp_path / "b.npz", layout)
+    again = read_layout_npz(tmp_path / "b.npz")
+    np.testing.assert_array_equal(again.spans.doors, layout.spans.doors)
+
+
+@pytest.mark.parametrize(
+    ("name", "columns", "told"),
+    [
+        ("door_cols", [[3.0, 80.0]], "doors: found a column outside the image"),
+        ("door_cols", [[3.0, np.nan]], "doors"),
+        ("ceil_corner_u", [1.0, 2.0, 3.0], "ceil_corner_u: found 3 columns; expected 2"),
+    ],
+)
+def test_bad_spans_are_refused(tmp_path, name, columns, told):
+    arrays = {
+        "floor_boundary": FLOOR,
+        "ceil_corner_u": np.array([1.0, 2.0]),
+        "ceil_corner_phi": np.array([0.5, 0.6]),
+        name: np.array(columns),
+    }
+    np.savez(tmp_path / "a.npz", **arrays)
+    with pytest.raises(InputError, match=told):
+        read_layout_npz(tmp_path / "a.npz")

@@ -57,3 +57,12 @@ def test_the_paper_keeps_the_height():
     config = RegistrationConfig(height_from_pose=False)
     view = _cast(Layout(np.full(64, -0.5)), translation=(0, -0.5, 0), config=config)
     assert register(view, 0.4).height == 1.0
+
+
+def test_the_ceiling_is_as_high_as_the_layout_says():
+    """A ceiling 1.6 above the floor at a wall 1 away, the camera 1 above the floor."""
+    floor, ceiling = np.full(64, -np.pi / 4), np.full(64, np.arctan(0.6))
+    ceiling[10:20] = np.nan
+    assert _cast(Layout(floor, ceiling)).ceiling == pytest.approx(1.6)
+    assert np.isnan(_cast(Layout(floor)).ceiling)
+    assert register(_cast(Layout(floor, ceiling)), 1.0).ceiling == pytest.approx(1.6)

@@ -202,7 +202,9 @@ def _room(
     ring = to_plan(np.roll(shape.polygon, -first, axis=0))
     sigmas: list[float | None] = [None] * len(ring)
     if shape.sigmas is not None:
-        placed = _place_sigmas(shape.polygon, cameras, ch_per_su, scale_sigma)
+        placed = _place_sigmas(
+            shape.polygon, cameras, ch_per_su, scale_sigma, config.adjust.sigma_factor
+        )
         told = length * np.roll(np.hypot(shape.sigmas, placed), -first)
         sigmas = [float(s) if np.isfinite(s) else None for s in told]
     walls = tuple(
@@ -214,7 +216,11 @@ def _room(
 
 
 def _place_sigmas(
-    polygon: FloatArray, cameras: Sequence[PlacedCamera], ch_per_su: float, scale_sigma: float
+    polygon: FloatArray,
+    cameras: Sequence[PlacedCamera],
+    ch_per_su: float,
+    scale_sigma: float,
+    factor: float,
 ) -> FloatArray:
     """(N,) across each wall, of where the room lies: by its cameras and by the scale."""
     along, _ = edge_directions(polygon)
@@ -229,7 +235,8 @@ def _place_sigmas(
         arm = middle - ch_per_su * camera.position_su - camera.correction.shift
         turning = outward[:, 1] * arm[:, 0] - outward[:, 0] * arm[:, 1]
         moves = np.column_stack([outward, turning])
-        variance = variance + np.einsum("ni,ij,nj->n", moves, camera.covariance, moves)
+        placed = np.einsum("ni,ij,nj->n", moves, camera.covariance, moves)
+        variance = variance + factor**2 * placed
     return np.asarray(np.sqrt(variance))
 
 

@@ -89,7 +89,10 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
         state, told = _freeze(state, _estimate(state, config), config)
         events += told
     if state.climbing:
-        state, told = _arrive(state, config)
+        # A single layout makes no level.
+        rises = [view.rise_su for view in state.climbing]
+        there = float(np.median(rises)) if len(rises) > 1 else state.levels[state.level]
+        state, told = _arrive(state, there, config)
         events += told
     if config.shape.method == "fusion":
         if state.finished == state.seen:
@@ -201,36 +204,29 @@ def _on_level(state: State, view: CastLayout, config: Config) -> tuple[State, tu
     state = replace(state, climbing=(*state.climbing, view))
     if abs(higher) <= levels.step_ch:
         # Back where it was: the camera was only held higher or lower for a while.
-        return _arrive(state, config)
+        return _arrive(state, state.levels[state.level], config)
     recent = state.climbing[-levels.keyframes :]
     rises = ch_per_su * np.array([v.rise_su for v in recent])
     if len(recent) < levels.keyframes or np.ptp(rises) > levels.step_ch / 2:
         return state, (KeyframeWaiting(view.keyframe, len(state.climbing)),)
-    return _arrive(state, config)
+    return _arrive(state, float(np.median([v.rise_su for v in recent])), config)
 
 
 _FOLLOWING = 0.1
 """What counts as the camera's usual height follows the last ten keyframes."""
 
 
-def _arrive(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
-    """Places the layouts that waited for their level, where the last ones are.
-
-    A single layout makes no level: at the end of a walk it is of the level before.
-    """
+def _arrive(state: State, rise_su: float, config: Config) -> tuple[State, tuple[Event, ...]]:
+    """Places the layouts that waited for their level, on that of a height."""
     assert state.scale is not None
     ch_per_su, climbing = state.scale.ch_per_su or 0.0, state.climbing
     state = replace(state, climbing=())
     events: list[Event] = []
-    last = climbing[-max(1, config.levels.keyframes) :]
-    rise = float(np.median([view.rise_su for view in last]))
-    away = [ch_per_su * abs(rise - base) for base in state.levels]
+    away = [ch_per_su * abs(rise_su - base) for base in state.levels]
     level = int(np.argmin(away))
-    if len(last) == 1:
-        level = state.level
-    elif away[level] > config.levels.step_ch:
+    if away[level] > config.levels.step_ch:
         level = len(state.levels)
-        state = replace(state, levels=(*state.levels, rise))
+        state = replace(state, levels=(*state.levels, rise_su))
     changed = level != state.level
     if changed:
         state = replace(state, level=level, cruise_su=0.0, current=None)

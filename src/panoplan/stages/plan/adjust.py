@@ -301,7 +301,11 @@ class _System:
             ),
             shape=(self.size, self.size),
         ).tocsc()
-        return splu(normal, permc_spec="MMD_AT_PLUS_A", options={"SymmetricMode": True})
+        return splu(
+            normal,
+            permc_spec="MMD_AT_PLUS_A",
+            options={"SymmetricMode": True, "Equil": False, "DiagPivotThresh": 0.0},
+        )
 
     def solve(self) -> FloatArray:
         """The Gauss-Newton step."""

@@ -1,0 +1,122 @@
+"""Planar bundle adjustment on a walk around one room with known errors of the odometry."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from tests.scenes import L_SHAPE, exact_layout, yaw
+
+from panoplan.config import Config
+from panoplan.stages.plan.adjust import adjust
+from panoplan.stages.registration import cast, register
+from panoplan.types.keyframe import Keyframe
+from panoplan.types.pose import Pose
+from panoplan.types.view import Correction
+
+CONFIG = Config()
+COUNT = 24
+NO_FACES = (np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64))
+AROUND = np.array([[-2.0, -1.0], [2.0, -1.0], [-1.5, -1.2], [-1.5, 1.2], [-2.0, -0.5]])
+
+
+def _way(points, count):
+    along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(points, axis=0).T))])
+    at = np.linspace(0.0, along[-1], count)
+    return np.stack([np.interp(at, along, points[:, k]) for k in (0, 1)], axis=1)
+
+
+TRUE = _way(AROUND, COUNT)
+HEADINGS = np.linspace(0.0, 2.0, COUNT)
+
+
+def _views(told, turned, noise=0.0):
+    """Layouts seen from the true poses, registered at those that the odometry tells."""
+    rng = np.random.default_rng(1)
+    out = []
+    for k in range(COUNT):
+        error = noise * rng.normal() * np.ones(1024)
+        layout = exact_layout(L_SHAPE, TRUE[k], yaw(HEADINGS[k]), noise=error)
+        pose = Pose(yaw(HEADINGS[k] + turned[k]), [told[k, 0], 0.0, told[k, 1]])
+        keyframe = Keyframe(f"kf{k}", pose, layout)
+        view = register(cast(keyframe, k, np.zeros(3), np.eye(2), CONFIG.registration), 1.0)
+        # Exact layouts are to be trusted more than a network's.
+        out.append(replace(view, sigmas=0.2 * view.sigmas))
+    return out
+
+
+def _adjusted(views):
+    cameras = np.array([view.camera for view in views])
+    ways = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(cameras, axis=0).T))])
+    start = [Correction()] * len(views)
+    rooms = [(range(len(views)), L_SHAPE + 0.0)]
+    for reach in (0.3, 0.15):
+        found = adjust(views, ways, rooms, start, NO_FACES, reach, CONFIG.adjust)
+        start = found.corrections
+    moved = [c.apply(view) for c, view in zip(found.corrections, views, strict=True)]
+    return found, moved
+
+
+def _off(views):
+    return np.hypot(*(np.array([view.camera for view in views]) - TRUE).T)
+
+
+def _drifted():
+    share = np.linspace(0.0, 1.0, COUNT)
+    return TRUE + np.outer(share, [0.2, -0.12]), np.deg2rad(2.5) * share
+
+
+def test_drift_is_taken_back():
+    views = _views(*_drifted())
+    found, moved = _adjusted(views)
+    assert _off(views).max() > 0.2
+    assert _off(moved).max() < 0.02
+    # The odometry's headings run clockwise: what it turned too far is turned back the other way.
+    assert found.corrections[-1].turn == pytest.approx(np.deg2rad(2.5), abs=np.deg2rad(0.2))
+    # The boundaries lie on the walls again: the corner at the origin is where all see it.
+    last = moved[-1].boundary
+    assert np.hypot(*last.T).min() < 0.03
+    assert np.abs(last[:, 0].min() + 3.0) < 0.03
+
+
+def test_true_poses_stay_where_they_are():
+    views = _views(TRUE, np.zeros(COUNT), noise=0.01)
+    _, moved = _adjusted(views)
+    assert _off(moved).max() < 0.005
+
+
+def test_what_a_layout_is_too_large_is_its_factor():
+    views = _views(TRUE, np.zeros(COUNT))
+    large = views[7]
+    views[7] = replace(large, boundary=large.camera + 1.03 * (large.boundary - large.camera))
+    found, _ = _adjusted(views)
+    factors = np.array([c.factor for c in found.corrections])
+    assert factors[7] == pytest.approx(1 / 1.03, abs=0.005)
+    assert np.abs(np.delete(factors, 7) - 1).max() < 0.005
+
+
+def test_leaks_pull_at_nothing():
+    views = _views(*_drifted())
+    for k in range(0, COUNT, 3):
+        boundary = views[k].boundary.copy()
+        boundary[100:220] = views[k].camera + 1.5 * (boundary[100:220] - views[k].camera)
+        views[k] = replace(views[k], boundary=boundary)
+    _, moved = _adjusted(views)
+    assert _off(moved).max() < 0.02
+
+
+def test_the_covariance_covers_the_error_of_the_middle_view():
+    found, moved = _adjusted(_views(*_drifted()))
+    ((index, covariance),) = found.covariances.items()
+    assert index == COUNT // 2
+    error = moved[index].camera - TRUE[index]
+    assert error @ np.linalg.solve(covariance[:2, :2], error) < 9.0
+    # Where the odometry is right, the evidence says so.
+    sure = _adjusted(_views(TRUE, np.zeros(COUNT)))[0].covariances[index]
+    assert np.trace(sure) < np.trace(covariance) / 10
+
+
+def test_without_walls_nothing_moves():
+    views = _views(*_drifted())
+    start = [Correction((0.1, 0.0))] * COUNT
+    found = adjust(views, np.arange(COUNT), [], start, NO_FACES, 0.3, CONFIG.adjust)
+    assert list(found.corrections) == start
