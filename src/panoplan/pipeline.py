@@ -8,8 +8,10 @@ from typing import Literal
 
 from panoplan.config import Config
 from panoplan.datasets.scene import Scene
+from panoplan.estimator.explain import explain
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
+from panoplan.exporters.explain import FOLDER, write_explanation
 from panoplan.exporters.pictures import write_plan_pictures
 from panoplan.formats.run_folder import RunFolder
 from panoplan.types.plan import FloorPlan, Skipped
@@ -24,10 +26,12 @@ class RunOptions:
     Attributes:
         trajectory_unit: "m" where the trajectory is metric.
         camera_height_m: overrides what the scene says.
+        explain: whether pictures of each stage are written, too.
     """
 
     trajectory_unit: Literal["unknown", "m"] = "unknown"
     camera_height_m: float | None = None
+    explain: bool = False
 
 
 def run(
@@ -68,6 +72,9 @@ def run(
     unread = tuple(Skipped(name, "keyframe", reason) for name, reason in scene.skipped)
     plan = replace(plan, level_rotation=scene.level_rotation, skipped=(*unread, *plan.skipped))
     write_plan_pictures(folder.path, plan)
+    if options.explain:
+        explanation = explain(estimator.state, scene.keyframes, config)
+        write_explanation(folder.path / FOLDER, explanation)
     folder.complete(plan)
     return plan
 

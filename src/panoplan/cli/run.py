@@ -30,6 +30,9 @@ def add_parser(commands: Any) -> None:
     parser.add_argument("--version", help="of an MP3D-FPE scene that has several")
     parser.add_argument("--trajectory-unit", choices=["m", "unknown"], default="unknown")
     parser.add_argument("--camera-height", type=_metres, metavar="M", help="metres above the floor")
+    parser.add_argument(
+        "--explain", action="store_true", help="also write a picture a stage into OUTPUT/explain"
+    )
     parser.add_argument("--force", action="store_true", help="write into a folder of other files")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
     settings.add_arguments(parser)
@@ -46,7 +49,7 @@ def act(options: argparse.Namespace) -> int:
         version=options.version,
     )
     folder = RunFolder(options.output, force=options.force)
-    told = RunOptions(options.trajectory_unit, options.camera_height)
+    told = RunOptions(options.trajectory_unit, options.camera_height, options.explain)
     with progress("keyframes", quiet=options.quiet) as report:
         plan = run(scene, config, told, folder, report)
     if not options.quiet:
