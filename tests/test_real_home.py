@@ -9,16 +9,18 @@ from panoplan.estimator.state import Walk
 from panoplan.metrics.report import evaluate
 
 
-@pytest.mark.parametrize("name", ["sound", "default"])
-def test_floors_on_the_real_home(name, zind_scene_folder, shared_data):
-    scene = open_scene(zind_scene_folder)
-    walk = Walk(camera_height_m=scene.camera_height_m, expected_keyframes=len(scene.keyframes))
+def _report(name, unit, scene, truth_folder):
+    walk = Walk(unit, scene.camera_height_m, len(scene.keyframes))
     estimator = FloorPlanEstimator(preset(name), walk)
     for keyframe in scene.keyframes:
         estimator.update(keyframe)
     estimator.finish()
-    truth = read_truth(shared_data / "zind_000")
-    report = evaluate(estimator.plan(), truth, rooms="rooms_partial", align="none")
+    truth = read_truth(truth_folder)
+    return evaluate(estimator.plan(), truth, rooms="rooms_partial", align="none")
+
+
+def test_floors_of_the_papers_method_made_sound(zind_scene_folder, shared_data):
+    report = _report("sound", "unknown", open_scene(zind_scene_folder), shared_data / "zind_000")
     rooms, corners = report.rooms, report.corners
     _, half, seven = rooms.scores_visited
     assert (half.iou, seven.iou) == (0.5, 0.7)
@@ -30,3 +32,30 @@ def test_floors_on_the_real_home(name, zind_scene_folder, shared_data):
     assert abs(report.scale_error_percent) <= 1.0
     assert corners.true_to_predicted.median_cm <= 10
     assert corners.predicted_to_true.median_cm <= 10
+
+
+@pytest.mark.parametrize(
+    ("unit", "half", "seven", "iou", "corner_cm", "scale_percent"),
+    [("m", 17, 16, 0.92, 5.0, 0.05), ("unknown", 16, 15, 0.89, 7.0, 0.5)],
+)
+def test_floors_of_the_default(
+    unit, half, seven, iou, corner_cm, scale_percent, zind_scene_folder, shared_data
+):
+    folder = zind_scene_folder if unit == "unknown" else shared_data / "zind_000"
+    trajectory = folder / ("trajectory.tum" if unit == "unknown" else "trajectory_gt.tum")
+    scene = open_scene(folder, trajectory=trajectory)
+    report = _report("default", unit, scene, shared_data / "zind_000")
+    rooms, corners = report.rooms, report.corners
+    assert rooms.true == 19
+    assert rooms.scores[1].hits >= half
+    assert rooms.scores[2].hits >= seven
+    assert rooms.matching_none <= 1
+    assert rooms.mean_iou >= iou
+    assert rooms.floor_iou >= 0.92
+    assert rooms.overlap_m2 < 1e-9
+    assert corners.true_to_predicted.median_cm <= corner_cm
+    assert corners.predicted_to_true.median_cm <= corner_cm
+    assert report.walls.median_cm <= 2.0
+    assert report.doors.recall >= 0.8
+    assert report.doors.precision >= 0.8
+    assert abs(report.scale_error_percent) <= scale_percent

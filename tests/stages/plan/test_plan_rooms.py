@@ -9,6 +9,7 @@ from tests.scenes import L_SHAPE, RECTANGLE, walk
 
 from panoplan.config import Config
 from panoplan.stages.plan import fusion, grouping
+from panoplan.stages.plan import outline as outline_module
 from panoplan.stages.plan.floorplan import plan_rooms
 from panoplan.stages.plan.sight import sights
 from panoplan.stages.registration import cast, register
@@ -160,3 +161,13 @@ def test_rooms_are_joined_across_a_wide_line_only(width):
     )  # fmt: skip
     rooms = plan_rooms(_views((both, [*LEFT, *_moved(LEFT)])), CONFIG)
     assert len(rooms) == (2 if width < 1 else 1)
+
+
+def test_an_outline_that_turns_back_on_itself_loses_the_spike():
+    ring = np.array([[0, 0], [4, 0], [4, 3], [2.05, 3], [2.0, 2.0], [1.95, 3], [0, 3]], dtype=float)
+    smooth, sigmas = outline_module._without_spikes(ring, np.arange(7.0))
+    assert smooth.tolist() == np.delete(ring, 4, axis=0).tolist()
+    assert np.isnan(sigmas[3])
+    assert sigmas[[0, 1, 2, 4, 5]].tolist() == [0, 1, 2, 5, 6]
+    # A right angle is none.
+    assert len(outline_module._without_spikes(ring[:4], np.zeros(4))[0]) == 4

@@ -289,9 +289,26 @@ def _corners(walls: Sequence[WallLine]) -> tuple[FloatArray, FloatArray]:
             # A step between two nearly parallel walls is a wall itself.
             corners += [ends[0], ends[1]]
             sigmas += [np.nan, wall.sigma]
-    return np.array(corners).reshape(-1, 2), np.array(sigmas)
+    return _without_spikes(np.array(corners).reshape(-1, 2), np.array(sigmas))
 
 
+def _without_spikes(ring: FloatArray, sigmas: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """Drops corners where the outline turns back on itself: no wall is a blade."""
+    while len(ring) > 4:
+        before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+        length = np.maximum(np.hypot(*before.T) * np.hypot(*after.T), 1e-12)
+        folded = (before * after).sum(axis=1) / length
+        sharpest = int(np.argmin(folded))
+        if folded[sharpest] > -_SPIKE_COSINE:
+            break
+        # The wall that began at the corner before now ends at the one after: it is not fitted.
+        sigmas = sigmas.copy()
+        sigmas[sharpest - 1] = np.nan
+        ring, sigmas = np.delete(ring, sharpest, axis=0), np.delete(sigmas, sharpest)
+    return ring, sigmas
+
+
+_SPIKE_COSINE = float(np.cos(np.deg2rad(20.0)))
 _MEETING_SINE = 0.2
 _MEETING_CH = 0.25
 _STEP_CH = 0.07
