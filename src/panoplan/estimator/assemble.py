@@ -45,6 +45,8 @@ def assemble(state: State, config: Config) -> FloorPlan:
         None, "unknown", converged=False, keyframes_used=len(state.waiting)
     )
     ch_per_su = scale.ch_per_su or 0.0
+    if state.stretch != 1.0 and scale.ch_per_su is not None:
+        scale = replace(scale, ch_per_su=state.stretch * scale.ch_per_su)
     # Metres a unit of length of the method: the first camera's height.
     length = 1.0
     unit: Unit = "ch"
@@ -54,7 +56,9 @@ def assemble(state: State, config: Config) -> FloorPlan:
         length, unit = state.walk.camera_height_m / state.median_height, "m"
     frame = state.frame
     world_from_walk = np.eye(2) if frame is None else frame.walk_from_world.T
-    origin = np.zeros(2) if frame is None else ch_per_su * frame.origin_su[[0, 2]]
+    origin = np.zeros(2)
+    if frame is not None:
+        origin = state.stretch * ch_per_su * frame.origin_su[[0, 2]]
 
     def to_plan(points: FloatArray) -> FloatArray:
         return np.asarray(length * (points @ world_from_walk.T + origin))

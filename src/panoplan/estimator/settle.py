@@ -12,7 +12,7 @@ import numpy as np
 from panoplan.config import Config
 from panoplan.estimator.state import Composition, PlacedCamera, RoomState, State, room_id
 from panoplan.stages import rooms
-from panoplan.stages.plan.adjust import adjust
+from panoplan.stages.plan.adjust import Stretch, adjust
 from panoplan.stages.plan.apertures import apertures, stretches
 from panoplan.stages.plan.floorplan import plan_rooms
 from panoplan.stages.plan.partition import facing_walls, partition
@@ -42,7 +42,7 @@ def settle_around(state: State, index: int, config: Config) -> tuple[State, tupl
     keyframes = _keyframes(state, near)
     now = _regrouped(state, keyframes, config)
     if config.adjust.rounds and len(keyframes) >= config.adjust.min_views:
-        now, _ = _adjusted(now, keyframes, 0, config)
+        now, _ = _adjusted(now, keyframes, 0, 0.0, config)
         now = _regrouped(now, keyframes, config)
     return _settled(state, now, keyframes, config)
 
@@ -71,8 +71,10 @@ def settle_level(state: State, level: int, config: Config) -> tuple[State, tuple
     begun = there if not config.adjust.rounds else [k for k in there if state.rooms[k].stale]
     if begun:
         now = _regrouped(now, _keyframes(state, begun), config)
+    scale = state.scale
+    sigma = 0.0 if scale is None or scale.method != "entropy" else scale.sigma or 0.0
     for number in range(config.adjust.rounds):
-        now, moved = _adjusted(now, keyframes, number, config)
+        now, moved = _adjusted(now, keyframes, number, sigma, config)
         if number and moved < _MOVED_CH:
             break
         now = _regrouped(now, keyframes, config)
@@ -117,9 +119,9 @@ def _holding(state: State, keyframes: frozenset[int]) -> list[int]:
 
 
 def _adjusted(
-    state: State, keyframes: frozenset[int], number: int, config: Config
+    state: State, keyframes: frozenset[int], number: int, scale_sigma: float, config: Config
 ) -> tuple[State, float]:
-    """Corrects the cameras of some rooms, which are then to be settled again.
+    """Corrects the cameras of some rooms, and the scale, which are then to be settled again.
 
     Returns:
         What is known now, and how far the corrections moved a camera or a wall at most.
@@ -139,6 +141,7 @@ def _adjusted(
         ch_per_su * np.array([state.cameras[view.index].way_su for view in views]),
         outlined,
         [state.cameras[view.index].correction for view in views],
+        Stretch(state.stretch, scale_sigma),
         facing_walls([ring for _, ring in outlined], config.partition),
         config.adjust.reach_ch / (1 + number),
         config.adjust,
@@ -151,7 +154,7 @@ def _adjusted(
         moved = max(moved, math.dist(new.shift, old.shift), wall * _WALL_CH)
         covariance = found.covariances.get(place[view.index])
         cameras[view.index] = replace(cameras[view.index], correction=new, covariance=covariance)
-    return replace(state, cameras=tuple(cameras)), moved
+    return replace(state, cameras=tuple(cameras), stretch=found.stretch), moved
 
 
 _WALL_CH = 2.0
@@ -176,12 +179,12 @@ def carried(state: State, index: int) -> tuple[PlacedCamera, ...]:
     """
     placed_before = (k for k in range(index - 1, -1, -1) if state.cameras[k].room is not None)
     before = next((state.cameras[k] for k in placed_before), None)
-    if before is None or before.correction == Correction():
+    if before is None or (before.correction == Correction() and state.stretch == 1.0):
         return state.cameras
     assert state.scale is not None
     camera, old = state.cameras[index], before.correction
     step = (state.scale.ch_per_su or 0.0) * (camera.position_su - before.position_su)
-    c, s = np.cos(old.turn), np.sin(old.turn)
+    c, s = state.stretch * np.cos(old.turn), state.stretch * np.sin(old.turn)
     shift = old.shift + np.array([[c, -s], [s, c]]) @ step - step
     moved = Correction((float(shift[0]), float(shift[1])), old.turn)
     placed = replace(camera, correction=moved)

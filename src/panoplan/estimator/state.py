@@ -138,6 +138,7 @@ class State:
         level: storey that the camera is on.
         cruise_su: how much higher than at the level's start the camera lately was.
         climbing: layouts that wait until their level is known.
+        stretch: factor on the scale by bundle adjustment.
         median_height: of the warm-up's cameras, in heights of the first.
         rooms: by number.
         current: index into `rooms` of the room last assigned.
@@ -159,6 +160,7 @@ class State:
     level: int = 0
     cruise_su: float = 0.0
     climbing: tuple[CastLayout, ...] = ()
+    stretch: float = 1.0
     median_height: float = 1.0
     rooms: tuple[RoomState, ...] = ()
     current: int | None = None

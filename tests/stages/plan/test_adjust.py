@@ -7,7 +7,7 @@ import pytest
 from tests.scenes import L_SHAPE, exact_layout, yaw
 
 from panoplan.config import Config
-from panoplan.stages.plan.adjust import adjust
+from panoplan.stages.plan.adjust import Stretch, adjust
 from panoplan.stages.registration import cast, register
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.pose import Pose
@@ -15,6 +15,7 @@ from panoplan.types.view import Correction
 
 CONFIG = Config()
 COUNT = 24
+KNOWN = Stretch()
 NO_FACES = (np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64))
 AROUND = np.array([[-2.0, -1.0], [2.0, -1.0], [-1.5, -1.2], [-1.5, 1.2], [-2.0, -0.5]])
 
@@ -44,13 +45,13 @@ def _views(told, turned, noise=0.0):
     return out
 
 
-def _adjusted(views):
+def _adjusted(views, stretch=KNOWN):
     cameras = np.array([view.camera for view in views])
     ways = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(cameras, axis=0).T))])
     start = [Correction()] * len(views)
     rooms = [(range(len(views)), L_SHAPE + 0.0)]
     for reach in (0.3, 0.15):
-        found = adjust(views, ways, rooms, start, NO_FACES, reach, CONFIG.adjust)
+        found = adjust(views, ways, rooms, start, stretch, NO_FACES, reach, CONFIG.adjust)
         start = found.corrections
     moved = [c.apply(view) for c, view in zip(found.corrections, views, strict=True)]
     return found, moved
@@ -94,6 +95,15 @@ def test_what_a_layout_is_too_large_is_its_factor():
     assert np.abs(np.delete(factors, 7) - 1).max() < 0.005
 
 
+def test_a_wrong_scale_is_the_stretch():
+    """The odometry tells 4 % too little way; what is known of the scale allows for it or not."""
+    views = _views(0.96 * TRUE + 0.04 * TRUE[0], np.zeros(COUNT))
+    found, moved = _adjusted(views, Stretch(1.0, 0.05))
+    assert found.stretch == pytest.approx(1 / 0.96, rel=0.005)
+    assert _off(moved).max() < 0.01
+    assert _adjusted(views, Stretch(1.0, 0.0))[0].stretch == pytest.approx(1.0, abs=1e-6)
+
+
 def test_leaks_pull_at_nothing():
     views = _views(*_drifted())
     for k in range(0, COUNT, 3):
@@ -118,5 +128,6 @@ def test_the_covariance_covers_the_error_of_the_middle_view():
 def test_without_walls_nothing_moves():
     views = _views(*_drifted())
     start = [Correction((0.1, 0.0))] * COUNT
-    found = adjust(views, np.arange(COUNT), [], start, NO_FACES, 0.3, CONFIG.adjust)
+    found = adjust(views, np.arange(COUNT), [], start, Stretch(1.1), NO_FACES, 0.3, CONFIG.adjust)
     assert list(found.corrections) == start
+    assert found.stretch == 1.1

@@ -18,17 +18,32 @@ from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.view import Correction, RegisteredLayout
 
 
+@dataclass(frozen=True)
+class Stretch:
+    """What is known of the scale of the odometry's steps.
+
+    Attributes:
+        factor: on the steps, to begin with.
+        sigma: standard deviation of the factor about 1; 0 where `factor` holds.
+    """
+
+    factor: float = 1.0
+    sigma: float = 0.0
+
+
 @dataclass(frozen=True, eq=False)
 class Adjusted:
     """What an adjustment found.
 
     Attributes:
         corrections: of each view.
+        stretch: factor on the odometry's steps.
         covariances: (3, 3) of (x, y, turn) of the middle view of each room, by index of the view:
             how well it is known where the room lies.
     """
 
     corrections: tuple[Correction, ...]
+    stretch: float
     covariances: dict[int, FloatArray]
 
 
@@ -51,11 +66,21 @@ class _Pieces:
 
 @dataclass(frozen=True, eq=False)
 class _Walk:
-    """Cameras (V, 2) of the odometry, way (V − 1,) between them, where the first one stays (3,)."""
+    """The odometry.
+
+    Attributes:
+        cameras: (V, 2) positions.
+        steps: (V − 1,) way between them.
+        first: (3,) x, y and turn at which the first camera stays.
+        stretch: log of the factor on its steps, unknown.
+        prior: of that factor.
+    """
 
     cameras: FloatArray
     steps: FloatArray
     first: FloatArray
+    stretch: float
+    prior: Stretch
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,23 +97,26 @@ def adjust(
     ways: FloatArray,
     rooms: Sequence[tuple[Sequence[int], FloatArray]],
     start: Sequence[Correction],
+    stretch: Stretch,
     faces: tuple[IntArray, IntArray],
     reach_ch: float,
     config: AdjustConfig,
 ) -> Adjusted:
     """Moves cameras and walls until the layouts agree with one another and with the odometry.
 
-    Unknown are each camera's position, heading and the factor of its ranges, and the line of each
-    wall. Columns near a wall of their room pull at it, robustly; from camera to camera the
-    odometry holds, and the first one stays. How much the odometry errs is taken from the data:
-    the multiple of the configured sigmas with most evidence (Laplace's approximation), so that
-    true poses stay where they are.
+    Unknown are each camera's position, heading and the factor of its ranges, the line of each
+    wall, and by how much the odometry's steps are too short or too long together. Columns near a
+    wall of their room pull at it, robustly; from camera to camera the odometry holds, and the
+    first one stays. How much the odometry errs is taken from the data: the multiple of the
+    configured sigmas with most evidence (Laplace's approximation), so that true poses stay where
+    they are.
 
     Args:
         views: in the order of the walk, where the odometry has them.
         ways: (V,) way gone to each, camera heights, increasing.
         rooms: indices of the views of each room, and its outline (N, 2), as found after `start`.
         start: corrections to begin with; that of the first view is kept.
+        stretch: what is known of the scale of the odometry's steps.
         faces: indices of walls, counted through room by room, that may be the two faces of one:
             they are parallel, robustly.
         reach_ch: columns this near to a wall take part.
@@ -102,21 +130,27 @@ def adjust(
     pieces, walls = _pieces(views, rooms, start, reach_ch, config)
     count = len(views)
     if len(pieces.view) == 0 or count < 2:
-        return Adjusted(tuple(start), {})
+        return Adjusted(tuple(start), stretch.factor, {})
     state = np.array([(*c.shift, c.turn, np.log(c.factor)) for c in start])
-    walk = _Walk(np.array([view.camera for view in views]), np.diff(ways), state[0, :3].copy())
+    walk = _Walk(
+        np.array([view.camera for view in views]),
+        np.diff(ways),
+        state[0, :3].copy(),
+        float(np.log(stretch.factor)),
+        stretch,
+    )
     best, falling = -np.inf, 0
-    chosen, found = state, None
+    chosen, found, stretched = state, None, stretch.factor
     for multiple in config.odometry_multiples:
         for _ in range(config.iterations):
             system = _system(state, walls, walk, pieces, faces, multiple, config)
-            state, walls = _moved(state, walls, system.solve())
+            state, walls, walk = _moved(state, walls, walk, system.solve())
         system = _system(state, walls, walk, pieces, faces, multiple, config)
         evidence = system.evidence()
         evidence -= 3 * (count - 1) * np.log(multiple)
         if evidence > best:
             best, falling = evidence, 0
-            chosen, found = state, system
+            chosen, found, stretched = state, system, float(np.exp(walk.stretch))
         else:
             falling += 1
         if falling == _FALLING:
@@ -128,6 +162,7 @@ def adjust(
             Correction((float(x), float(y)), float(turned), float(np.exp(factor)))
             for x, y, turned, factor in chosen
         ),
+        stretched,
         dict(zip(middles, found.covariances(4 * np.array(middles)), strict=True)),
     )
 
@@ -227,11 +262,13 @@ def _piece(
     return ends, float(np.sqrt(2.0 * np.mean(sigma**2) / independent))
 
 
-def _moved(state: FloatArray, walls: _Walls, step: FloatArray) -> tuple[FloatArray, _Walls]:
+def _moved(
+    state: FloatArray, walls: _Walls, walk: _Walk, step: FloatArray
+) -> tuple[FloatArray, _Walls, _Walk]:
     views = step[: state.size].reshape(-1, 4)
-    lines = step[state.size :].reshape(-1, 2)
+    lines = step[state.size : -1].reshape(-1, 2)
     moved = replace(walls, angle=walls.angle + lines[:, 0], offset=walls.offset + lines[:, 1])
-    return state + views, moved
+    return state + views, moved, replace(walk, stretch=walk.stretch + float(step[-1]))
 
 
 def _system(
@@ -244,7 +281,7 @@ def _system(
     config: AdjustConfig,
 ) -> _System:
     """All residuals, linearised."""
-    system = _System(state.size + 2 * len(walls.angle))
+    system = _System(state.size + 2 * len(walls.angle) + 1)
     _add_walls(system, state, walls, walk.cameras, pieces, config)
     _add_odometry(system, state, walk, multiple, config)
     _add_faces(system, state.size, walls, faces, config)
@@ -373,14 +410,15 @@ def _add_odometry(
     way = np.sqrt(np.maximum(walk.steps, _SHORTEST_CH))
     weight = 1.0 / (multiple * config.odometry_ch * way)
     before, after = np.arange(count - 1), np.arange(1, count)
-    c, s = np.cos(state[:-1, 2]), np.sin(state[:-1, 2])
+    c, s = (np.exp(walk.stretch) * f(state[:-1, 2]) for f in (np.cos, np.sin))
     turned = np.stack([c * step[:, 0] - s * step[:, 1], s * step[:, 0] + c * step[:, 1]], axis=-1)
     slip = state[1:, :2] - state[:-1, :2] - (turned - step)
     by_turn = np.stack([turned[:, 1], -turned[:, 0]], axis=-1)
     ones = np.ones(count - 1)
     for k in (0, 1):
-        columns = np.stack([4 * before + k, 4 * after + k, 4 * before + 2], axis=1)
-        jacobian = np.stack([-ones, ones, by_turn[:, k]], axis=1)
+        last = np.full(count - 1, system.size - 1)
+        columns = np.stack([4 * before + k, 4 * after + k, 4 * before + 2, last], axis=1)
+        jacobian = np.stack([-ones, ones, by_turn[:, k], -turned[:, k]], axis=1)
         _add(system, columns, weight[:, None] * jacobian, weight * slip[:, k])
     weight = 1.0 / (multiple * np.deg2rad(config.odometry_deg) * way)
     columns = np.stack([4 * before + 2, 4 * after + 2], axis=1)
@@ -389,6 +427,10 @@ def _add_odometry(
     factor = np.full((count, 1), 1.0 / config.factor_sigma)
     every = np.arange(count)[:, None]
     _add(system, 4 * every + 3, factor, state[:, 3] / config.factor_sigma)
+    sure = 1.0 / max(walk.prior.sigma, _FIRST * _FIRST)
+    about = 0.0 if walk.prior.sigma else np.log(walk.prior.factor)
+    off = np.array([sure * (walk.stretch - about)])
+    _add(system, np.array([[system.size - 1]]), np.array([[sure]]), off)
     first = np.full((3, 1), 1.0 / _FIRST)
     _add(system, np.arange(3)[:, None], first, (state[0, :3] - walk.first) / _FIRST)
 
