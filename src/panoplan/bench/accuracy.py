@@ -3,45 +3,56 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any
+from functools import partial
+from typing import Any, Literal
 
 import numpy as np
 
+from panoplan.bench.parallel import mapped
 from panoplan.config import Config
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.metrics.report import Report, evaluate
-from panoplan.simulate.scene import Grade, SimulatedScene, simulate_flat
+from panoplan.simulate.scene import Grade, simulate_flat
 
 GRADES: tuple[Grade, ...] = ("mild", "hard")
 
 
 def measure(
-    seeds: range, config: Config, progress: Callable[[int, int], None]
-) -> dict[str, dict[str, Any]]:
+    seeds: range,
+    config: Config,
+    progress: Callable[[int, int], None],
+    *,
+    metric: bool = False,
+    jobs: int = 1,
+) -> dict[str, Any]:
     """Runs the method on flats of both grades.
 
     Args:
         seeds: one flat each.
         config: settings.
         progress: called with (flats done, flats in all).
+        metric: whether the trajectory is known to be in metres; else its scale is recovered.
+        jobs: processes; the figures do not depend on it.
 
     Returns:
-        For each grade the mean figures over the flats, and those of each flat.
+        Whether the trajectory was metric, and for each grade the mean figures over the flats and
+        those of each flat.
     """
-    result: dict[str, dict[str, Any]] = {}
-    for number, grade in enumerate(GRADES):
-        scenes = []
-        for done, seed in enumerate(seeds):
-            scenes.append({"seed": seed, **_figures(simulate_flat(seed, grade), config)})
-            progress(number * len(seeds) + done + 1, len(GRADES) * len(seeds))
+    work = [(grade, seed) for grade in GRADES for seed in seeds]
+    rows = mapped(partial(_scene, config=config, metric=metric), work, jobs, progress)
+    result: dict[str, Any] = {"metric": metric}
+    for grade in GRADES:
+        scenes = [row for (of, _), row in zip(work, rows, strict=True) if of == grade]
         result[grade] = {"summary": _summary(scenes), "scenes": scenes}
     return result
 
 
-def _figures(scene: SimulatedScene, config: Config) -> dict[str, Any]:
-    walk = Walk(camera_height_m=scene.camera_height_m, expected_keyframes=len(scene.keyframes))
-    estimator = FloorPlanEstimator(config, walk)
+def _scene(work: tuple[Grade, int], config: Config, metric: bool) -> dict[str, Any]:
+    grade, seed = work
+    scene = simulate_flat(seed, grade, metres_per_su=1.0 if metric else None)
+    unit: Literal["unknown", "m"] = "m" if metric else "unknown"
+    estimator = FloorPlanEstimator(config, Walk(unit, scene.camera_height_m, len(scene.keyframes)))
     for keyframe in scene.keyframes:
         estimator.update(keyframe)
     estimator.finish()
@@ -50,11 +61,15 @@ def _figures(scene: SimulatedScene, config: Config) -> dict[str, Any]:
     # The method's unit of length is the height of the first camera, bob included.
     first_m = scene.camera_height_m - float(scene.truth.trajectory.translations[0, 1])
     report = evaluate(plan, scene.truth, align="none", true_ch_per_su=scene.metres_per_su / first_m)
-    return _row(report, len(scene.keyframes), plan.scale.keyframes_used)
+    odometry = scene.metres_per_su * scene.odometry.translations[:, [0, 2]]
+    true = scene.truth.trajectory.translations[:, [0, 2]]
+    drift_cm = 100 * float(np.sqrt(np.mean(np.sum((odometry - true) ** 2, axis=1))))
+    row = _row(report, len(scene.keyframes), plan.scale.keyframes_used)
+    return {"seed": seed, **row, "odometry_ate_cm": drift_cm}
 
 
 def _row(report: Report, keyframes: int, warmup: int) -> dict[str, Any]:
-    rooms, corners = report.rooms, report.corners
+    rooms, corners, walls = report.rooms, report.corners, report.walls
     _, half, seven = rooms.scores
     return {
         "keyframes": keyframes,
@@ -65,8 +80,16 @@ def _row(report: Report, keyframes: int, warmup: int) -> dict[str, Any]:
         "hits_70": seven.hits,
         "mean_iou": rooms.mean_iou,
         "floor_iou": rooms.floor_iou,
+        "overlap_m2": rooms.overlap_m2,
         "corner_true_to_predicted_cm": corners.true_to_predicted.median_cm,
         "corner_predicted_to_true_cm": corners.predicted_to_true.median_cm,
+        "wall_cm": walls.median_cm,
+        "walls_stated": walls.stated,
+        "walls_within_1_sigma": walls.within_1_sigma,
+        "walls_within_2_sigma": walls.within_2_sigma,
+        "doors": [report.doors.hits, report.doors.true, report.doors.predicted],
+        "openings": [report.openings.hits, report.openings.true, report.openings.predicted],
+        "ate_cm": None if report.trajectory is None else report.trajectory.rmse_cm,
         "scale_error_percent": report.scale_error_percent,
     }
 
@@ -75,15 +98,39 @@ def _summary(scenes: list[dict[str, Any]]) -> dict[str, Any]:
     def column(name: str) -> list[float]:
         return [scene[name] for scene in scenes if scene[name] is not None]
 
+    def mean(name: str) -> float | None:
+        values = column(name)
+        return float(np.mean(values)) if values else None
+
+    def share(name: str) -> float | None:
+        told = [(s[name], s["walls_stated"]) for s in scenes if s[name] is not None]
+        counted = sum(count for _, count in told)
+        return sum(value * count for value, count in told) / counted if counted else None
+
+    def found(name: str) -> dict[str, float | None]:
+        hits, true, predicted = (sum(scene[name][k] for scene in scenes) for k in range(3))
+        return {
+            "recall": hits / true if true else None,
+            "precision": hits / predicted if predicted else None,
+        }
+
     true, hits = sum(column("rooms")), sum(column("hits_50"))
     return {
         "flats": len(scenes),
         "rooms": true,
         "lost": true - hits,
         "invented": sum(column("predicted")) - hits,
-        "mean_iou": float(np.mean(column("mean_iou"))),
-        "floor_iou": float(np.mean(column("floor_iou"))),
-        "corner_true_to_predicted_cm": float(np.mean(column("corner_true_to_predicted_cm"))),
-        "corner_predicted_to_true_cm": float(np.mean(column("corner_predicted_to_true_cm"))),
+        "mean_iou": mean("mean_iou"),
+        "floor_iou": mean("floor_iou"),
+        "overlap_m2": mean("overlap_m2"),
+        "corner_true_to_predicted_cm": mean("corner_true_to_predicted_cm"),
+        "corner_predicted_to_true_cm": mean("corner_predicted_to_true_cm"),
+        "wall_cm": mean("wall_cm"),
+        "walls_within_1_sigma": share("walls_within_1_sigma"),
+        "walls_within_2_sigma": share("walls_within_2_sigma"),
+        "doors": found("doors"),
+        "openings": found("openings"),
+        "odometry_ate_cm": mean("odometry_ate_cm"),
+        "ate_cm": mean("ate_cm"),
         "scale_error_percent_median": float(np.median(np.abs(column("scale_error_percent")))),
     }

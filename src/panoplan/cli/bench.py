@@ -1,4 +1,4 @@
-"""panoplan bench: accuracy and runtime on simulated buildings."""
+"""panoplan bench: accuracy and runtime, and the tables made from them."""
 
 from __future__ import annotations
 
@@ -7,10 +7,11 @@ import json
 from pathlib import Path
 from typing import Any
 
-from panoplan.bench import accuracy, runtime
+from panoplan.bench import accuracy, home, runtime, table
 from panoplan.bench.record import record
 from panoplan.cli import settings
 from panoplan.cli.progress import progress
+from panoplan.errors import InputError
 from panoplan.formats.atomic import write_text
 
 
@@ -18,12 +19,22 @@ def add_parser(commands: Any) -> None:
     """Adds the command."""
     parser = commands.add_parser(
         "bench",
-        help="accuracy and runtime on simulated buildings",
-        description="Measures accuracy on simulated flats, or time and memory on a long walk.",
-        epilog="example: panoplan bench accuracy --flats 20 -o accuracy.json",
+        help="accuracy and runtime, and tables of them",
+        description="accuracy: on simulated flats. home: on a scene with known truth. runtime: "
+        "time and memory on a long walk. table: writes what they measured into a page.",
+        epilog="example: panoplan bench accuracy --flats 20 --jobs 2 -o accuracy.json",
     )
-    parser.add_argument("what", choices=["accuracy", "runtime"])
+    parser.add_argument("what", choices=["accuracy", "home", "runtime", "table"])
+    parser.add_argument("input", nargs="?", type=Path, help="home: the scene; table: the page")
     parser.add_argument("--flats", type=int, default=20, metavar="N", help="seeds 0 to N-1 a grade")
+    parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
+    parser.add_argument("--jobs", type=_jobs, default=1, metavar="N", help="accuracy: processes")
+    parser.add_argument(
+        "--results",
+        type=Path,
+        default=Path("benchmarks"),
+        help="table: folder of the files measured (default: benchmarks)",
+    )
     parser.add_argument("-o", "--output", type=Path, help="JSON file (default: stdout)")
     parser.add_argument("--quiet", action="store_true", help="no progress")
     settings.add_arguments(parser)
@@ -32,10 +43,21 @@ def add_parser(commands: Any) -> None:
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
+    if options.what in ("home", "table") and options.input is None:
+        raise InputError(f"bench {options.what}", "no path", "bench home SCENE or bench table PAGE")
+    if options.what == "table":
+        changed = table.update(options.input, options.results)
+        print(f"{options.input}: {'changed' if changed else 'as it was'}")
+        return 0
     config = settings.resolve(options)
     with progress(options.what, quiet=options.quiet) as report:
         if options.what == "accuracy":
-            figures: Any = accuracy.measure(range(max(1, options.flats)), config, report)
+            seeds = range(max(1, options.flats))
+            figures: Any = accuracy.measure(
+                seeds, config, report, metric=options.metric, jobs=options.jobs
+            )
+        elif options.what == "home":
+            figures = home.measure(options.input, config)
         else:
             figures = runtime.measure(config, report)
     text = json.dumps(record(options.what, config, figures), indent=1) + "\n"
@@ -45,3 +67,10 @@ def act(options: argparse.Namespace) -> int:
         write_text(options.output, text)
         print(options.output)
     return 0
+
+
+def _jobs(text: str) -> int:
+    value = int(text)
+    if not 1 <= value <= 1024:
+        raise argparse.ArgumentTypeError(f"found {text}; expected 1 to 1024 processes")
+    return value

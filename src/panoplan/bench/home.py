@@ -1,0 +1,59 @@
+"""Accuracy on a scene with known truth, the trajectory metric or in an unknown unit."""
+
+from __future__ import annotations
+
+import time
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from panoplan.config import Config
+from panoplan.datasets.detect import open_scene, read_truth
+from panoplan.estimator.front import FloorPlanEstimator
+from panoplan.estimator.state import Walk
+from panoplan.metrics.report import as_dict, evaluate
+from panoplan.types.keyframe import Keyframe
+from panoplan.types.pose import Pose
+
+_UNIT_M = 3.7
+"""Metres a trajectory unit where the unit is to be unknown: any number will do."""
+_TRUE_POSES = "trajectory_gt.tum"
+
+
+def measure(folder: Path, config: Config) -> dict[str, Any]:
+    """Runs the method on a sequence folder with its true poses.
+
+    Args:
+        folder: with trajectory_gt.tum, predicted layouts, and the true plan.
+        config: settings.
+
+    Returns:
+        Figures over the rooms split at openings, unaligned, with the trajectory known to be metric
+        and with its scale recovered; seconds for the whole walk with warm compiled loops.
+
+    Raises:
+        InputError: the folder is not complete.
+    """
+    scene = open_scene(folder, trajectory=folder / _TRUE_POSES)
+    truth = read_truth(folder)
+    result: dict[str, Any] = {"scene": folder.name}
+    for name in ("metric", "recovered"):
+        metric = name == "metric"
+        keyframes = scene.keyframes if metric else [_in_units(k) for k in scene.keyframes]
+        walk = Walk("m" if metric else "unknown", scene.camera_height_m, len(keyframes))
+        for _ in range(2):
+            started = time.perf_counter()
+            estimator = FloorPlanEstimator(config, walk)
+            for keyframe in keyframes:
+                estimator.update(keyframe)
+            estimator.finish()
+            plan = estimator.plan()
+            seconds = time.perf_counter() - started
+        report = as_dict(evaluate(plan, truth, rooms="rooms_partial", align="none"))
+        result[name] = {"seconds": seconds, **report}
+    return result
+
+
+def _in_units(keyframe: Keyframe) -> Keyframe:
+    pose = Pose(keyframe.pose.rotation, keyframe.pose.translation / _UNIT_M)
+    return replace(keyframe, pose=pose)
