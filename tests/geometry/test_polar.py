@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from panoplan.geometry.polar import (
-    depths_inside,
+    at_boundaries,
     mutual_overlaps,
     passing_votes,
     range_profile,
@@ -92,15 +92,17 @@ def test_votes_of_views_that_pass_and_that_end():
     assert ending.tolist() == [0, 2, 0]
 
 
-def test_depth_of_cameras_inside_one_anothers_region():
-    cameras = np.array([[0.0, 0.0], [0.7, 0.0], [1.2, 0.0]])
-    profiles = np.stack([_square_profile(c, 1.0) for c in cameras[:2]] + [np.full(1024, 0.1)])
-    depth = depths_inside(cameras, profiles, 10.0)
-    assert depth[1, 0] == pytest.approx(0.3, abs=0.01)
-    assert depth[2, 0] == pytest.approx(-0.2, abs=0.01)
-    assert depth[0, 2] == pytest.approx(-1.1, abs=0.01)
-    assert np.isneginf(np.diag(depth)).all()
-    assert np.isneginf(depths_inside(cameras, profiles, 1.0)[0, 2])
+def test_cameras_near_a_boundary_and_deep_inside_none():
+    spots = np.array([[0.0, 0.0], [0.7, 0.0], [0.93, 0.0], [1.05, 0.0], [1.4, 0.0]])
+    profiles = np.stack([_square_profile(np.zeros(2), 1.0)] + [np.full(1024, 1e-3)] * 4)
+    # The second is deep inside the first view, the last one far outside of all.
+    assert at_boundaries(spots, profiles, 10.0, 0.1).tolist() == [False, False, True, True, False]
+    assert not at_boundaries(spots, profiles, 0.01, 0.1).any()
+    # Deep inside one view and near another's boundary is no doorway.
+    inside = np.array([[0.0, 0.0], [0.93, 0.0], [0.9, 0.0]])
+    both = np.stack([_square_profile(np.zeros(2), half) for half in (1.0, 1e-3, 3.0)])
+    assert not at_boundaries(inside, both, 10.0, 0.1)[1]
+    assert at_boundaries(inside[:2], both[:2], 10.0, 0.1)[1]
 
 
 def test_overlap_of_two_squares_over_the_smaller():

@@ -77,7 +77,7 @@ def settle_level(state: State, level: int, config: Config) -> tuple[State, tuple
         now, moved = _adjusted(now, keyframes, number, sigma, config)
         if number and moved < _MOVED_CH:
             break
-        now = _regrouped(now, keyframes, config)
+        now = _regrouped(now, keyframes, config, keep=number > 0)
     return _settled(state, now, keyframes, config)
 
 
@@ -191,17 +191,22 @@ def carried(state: State, index: int) -> tuple[PlacedCamera, ...]:
     return (*state.cameras[:index], placed, *state.cameras[index + 1 :])
 
 
-def _regrouped(state: State, keyframes: frozenset[int], config: Config) -> State:
+def _regrouped(
+    state: State, keyframes: frozenset[int], config: Config, *, keep: bool = False
+) -> State:
     """Tells the views of some rooms apart anew and shapes the rooms that they are of.
 
     A room that comes out keeps the number of the room that most of its views were in; where two
-    claim one number, the one with more of its views has it, the other gets a new one.
+    claim one number, the one with more of its views has it, the other gets a new one. With `keep`
+    the views stay together as they are.
     """
     chosen = _holding(state, keyframes)
     before = {view.index: state.rooms[k].number for k in chosen for view in state.rooms[k].views}
     raw = _views(state, chosen)
     views = [state.cameras[view.index].correction.apply(view) for view in raw]
-    planned = plan_rooms(views, config)
+    place = {view.index: k for k, view in enumerate(raw)}
+    known = [[place[view.index] for view in state.rooms[k].views] for k in chosen]
+    planned = plan_rooms(views, config, known if keep else None)
     used = max(room.number for room in state.rooms)
     claims = [[before[raw[k].index] for k in room.members] for room in planned]
     old = {state.rooms[k].number: state.rooms[k] for k in chosen}

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 Float32Array = NDArray[np.float32]
 
@@ -256,36 +257,39 @@ def _passing_votes(cameras, profiles, points, tolerance, through, ending):
                 ending[p] += 1
 
 
-def depths_inside(cameras: FloatArray, profiles: FloatArray, reach: float) -> FloatArray:
-    """How deep each camera stands inside each view's region.
+def at_boundaries(
+    cameras: FloatArray, profiles: FloatArray, reach: float, limit: float
+) -> BoolArray:
+    """Which cameras stand near the boundary of another view and deep inside none.
 
     Args:
         cameras: (V, 2) positions.
         profiles: (V, B) ranges as `range_profile` gives them.
         reach: pairs farther apart are not looked at.
+        limit: nearer than this is near, deeper than this is deep.
 
     Returns:
-        (V, V) distance from camera i to the boundary of view j, negative where it stands outside;
-        −inf on the diagonal, for pairs farther apart than `reach`, and where the boundary of view
-        j is unknown in that direction.
+        (V,) whether they do. Where a view's boundary is unknown in the direction of a camera it
+        says nothing of it.
     """
-    return np.asarray(_depths_inside(cameras, profiles, reach))
+    return np.asarray(_at_boundaries(cameras, profiles, reach, limit))
 
 
 @njit(cache=True)
-def _depths_inside(cameras, profiles, reach):
+def _at_boundaries(cameras, profiles, reach, limit):
     views, bins = profiles.shape
-    depth = np.full((views, views), -np.inf)
+    found = np.zeros(views, dtype=np.bool_)
     angles = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
     sines, cosines = np.sin(angles), np.cos(angles)
-    for j in range(views):
-        for i in range(views):
+    for i in range(views):
+        for j in range(views):
             x, y = cameras[i, 0] - cameras[j, 0], cameras[i, 1] - cameras[j, 1]
             away = np.sqrt(x * x + y * y)
             if i == j or away > reach:
                 continue
-            limit = profiles[j, int((np.arctan2(x, y) + np.pi) * bins / (2 * np.pi)) % bins]
-            if np.isnan(limit):
+            ahead = profiles[j, int((_heading(x, y) + np.pi) * bins / (2 * np.pi)) % bins]
+            # The boundary is at least as near as it is straight ahead.
+            if np.isnan(ahead) or (ahead > away and ahead - away < limit and found[i]):
                 continue
             nearest = np.inf
             for b in range(bins):
@@ -294,9 +298,12 @@ def _depths_inside(cameras, profiles, reach):
                 squared = dx * dx + dy * dy
                 if squared < nearest:
                     nearest = squared
-            nearest = np.sqrt(nearest)
-            depth[i, j] = nearest if away < limit else -nearest
-    return depth
+            if nearest < limit * limit:
+                found[i] = True
+            elif away < ahead:
+                found[i] = False
+                break
+    return found
 
 
 def mutual_overlaps(

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 from scipy.sparse import coo_array
 from scipy.sparse.linalg import splu
 
@@ -294,8 +295,8 @@ class _System:
     def __init__(self, size: int) -> None:
         self.size = size
         self.cost = 0.0
-        self._rows: list[IntArray] = []
-        self._columns: list[IntArray] = []
+        self._rows: list[NDArray[np.int32]] = []
+        self._columns: list[NDArray[np.int32]] = []
         self._values: list[FloatArray] = []
         self._right = np.zeros(size)
 
@@ -312,8 +313,9 @@ class _System:
         """
         width = columns.shape[1]
         self.cost += cost
-        self._rows.append(np.repeat(columns, width, axis=1).ravel())
-        self._columns.append(np.tile(columns, (1, width)).ravel())
+        small = columns.astype(np.int32)
+        self._rows.append(np.repeat(small, width, axis=1).ravel())
+        self._columns.append(np.tile(small, (1, width)).ravel())
         self._values.append((jacobian[:, :, None] * jacobian[:, None, :]).ravel())
         np.add.at(self._right, columns, -jacobian * residual[:, None])
 
@@ -329,7 +331,7 @@ class _System:
         rows, columns, values = (
             np.concatenate(part) for part in (self._rows, self._columns, self._values)
         )
-        every = np.arange(self.size)
+        every = np.arange(self.size, dtype=np.int32)
         damped = np.full(self.size, _DAMPING)
         normal = coo_array(
             (

@@ -33,7 +33,11 @@ class PlannedRoom:
     doorway: bool = False
 
 
-def plan_rooms(views: Sequence[RegisteredLayout], config: Config) -> tuple[PlannedRoom, ...]:
+def plan_rooms(
+    views: Sequence[RegisteredLayout],
+    config: Config,
+    known: Sequence[Sequence[int]] | None = None,
+) -> tuple[PlannedRoom, ...]:
     """Finds the rooms that views show.
 
     A view from a doorway makes a room of its own of what it alone sees, as of a closet; where it
@@ -42,6 +46,8 @@ def plan_rooms(views: Sequence[RegisteredLayout], config: Config) -> tuple[Plann
     Args:
         views: registered layouts, any number.
         config: settings.
+        known: indices of the views of each room as found before, where rooms are only to be shaped
+            anew.
 
     Returns:
         The rooms by their first view; every view is a member of exactly one.
@@ -49,7 +55,8 @@ def plan_rooms(views: Sequence[RegisteredLayout], config: Config) -> tuple[Plann
     if not views:
         return ()
     seen = sights(views)
-    grouping = group(seen, config.grouping, config.fusion)
+    groups = None if known is None else [tuple(sorted(members)) for members in known]
+    grouping = group(seen, config.grouping, config.fusion, groups)
     territories = grouping.territories
     assert territories is not None
     taken = _Taken(territories)

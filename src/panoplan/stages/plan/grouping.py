@@ -12,7 +12,7 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
 from panoplan.config import FusionConfig, GroupingConfig
-from panoplan.geometry.polar import depths_inside, mutual_overlaps, passing_votes
+from panoplan.geometry.polar import at_boundaries, mutual_overlaps, passing_votes
 from panoplan.stages.plan.fusion import NOBODY, Evidence, Territories, contest, fuse
 from panoplan.stages.plan.sight import Sights
 from panoplan.types.arrays import BoolArray, FloatArray
@@ -37,7 +37,12 @@ class Grouping:
     doorways: Group
 
 
-def group(views: Sights, config: GroupingConfig, fusion: FusionConfig) -> Grouping:
+def group(
+    views: Sights,
+    config: GroupingConfig,
+    fusion: FusionConfig,
+    known: Sequence[Group] | None = None,
+) -> Grouping:
     """Tells views apart by room.
 
     Views are linked by their common area; groups of them that see each other's floor without a
@@ -48,6 +53,7 @@ def group(views: Sights, config: GroupingConfig, fusion: FusionConfig) -> Groupi
         views: any number.
         config: settings.
         fusion: settings of the fields.
+        known: groups that were found before, where they are to stay; else they are found anew.
 
     Returns:
         The rooms.
@@ -60,12 +66,16 @@ def group(views: Sights, config: GroupingConfig, fusion: FusionConfig) -> Groupi
     if at_door.all():
         at_door[:] = False
     inner = np.flatnonzero(~at_door)
-    groups = [
-        tuple(int(inner[k]) for k in members)
-        for members in linked(views.pick(inner.tolist()), config)
-    ]
+    if known is None:
+        groups = [
+            tuple(int(inner[k]) for k in members)
+            for members in linked(views.pick(inner.tolist()), config)
+        ]
+    else:
+        kept = (tuple(k for k in members if not at_door[k]) for members in known)
+        groups = [members for members in kept if members]
     fields = {members: fuse(views.pick(members), fusion) for members in groups}
-    for regroup in (_joined, _dissolved):
+    for regroup in (_joined, _dissolved) if known is None else ():
         territories = contest([fields[members] for members in groups])
         groups = sorted(regroup(groups, views, territories, config, fusion))
         fields = {
@@ -86,9 +96,7 @@ def doorways(views: Sights, config: GroupingConfig) -> BoolArray:
     Returns:
         (V,) whether the camera stands near the boundary of another view, and deep inside none.
     """
-    depth = depths_inside(views.cameras, views.profiles, config.reach_ch)
-    near = np.abs(depth).min(axis=1) < config.doorway_ch
-    return np.asarray(near & (depth.max(axis=1) < config.doorway_ch))
+    return at_boundaries(views.cameras, views.profiles, config.reach_ch, config.doorway_ch)
 
 
 def linked(views: Sights, config: GroupingConfig) -> list[Group]:
@@ -104,7 +112,8 @@ def linked(views: Sights, config: GroupingConfig) -> list[Group]:
     if len(views) == 1:
         return [(0,)]
     common = mutual_overlaps(views.cameras, views.profiles, config.reach_ch, config.cell_ch)
-    tree = linkage(squareform(1.0 - common, checks=False), "average")
+    np.subtract(1.0, common, out=common)
+    tree = linkage(squareform(common, checks=False), "average")
     labels = fcluster(tree, 1.0 - config.min_overlap, "distance")
     members: dict[int, list[int]] = {}
     for index, label in enumerate(labels.tolist()):

@@ -57,9 +57,16 @@ class _Columns:
 
     points: FloatArray
     rays: FloatArray
-    ranges: FloatArray
     sigmas: FloatArray
     view: IntArray
+
+    def near(self, wall: WallLine, reach: float) -> _Columns:
+        """Those within a distance of a wall's line."""
+        off = (self.points - wall.middle) @ wall.outward
+        chosen = np.flatnonzero(np.abs(off) < reach)
+        return _Columns(
+            self.points[chosen], self.rays[chosen], self.sigmas[chosen], self.view[chosen]
+        )
 
 
 def outline(floor: Floor, views: Sights, config: OutlineConfig, fusion: FusionConfig) -> RoomShape:
@@ -113,7 +120,7 @@ def _columns(views: Sights) -> _Columns:
     points, sigmas, view = points[known], sigmas[known], view[known]
     rays = points - views.cameras[view]
     ranges = np.hypot(*rays.T)
-    return _Columns(points, rays / ranges[:, None], ranges, sigmas, view)
+    return _Columns(points, rays / ranges[:, None], sigmas, view)
 
 
 def _is_simple(ring: FloatArray) -> bool:
@@ -175,6 +182,7 @@ def _through(piece: FloatArray) -> WallLine:
 
 def _fitted(wall: WallLine, columns: _Columns, config: OutlineConfig) -> WallLine:
     """The wall moved and turned to the raw columns near it, robustly."""
+    columns = columns.near(wall, 2 * config.fit_reach_ch)
     for number in range(config.fit_rounds):
         step = _fit(wall, columns, config.fit_reach_ch / (1 + number), config)
         if step is None:
