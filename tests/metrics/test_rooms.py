@@ -132,3 +132,11 @@ def test_outline_distance_of_a_square_in_a_square():
     facing = (np.sqrt(2) + np.arcsinh(1)) / 4
     expected = (12 * 0.5 + 8 * 0.5 * facing) / 16
     assert outline_distance(outer, inner) == pytest.approx(expected, rel=1e-3)
+
+
+def test_a_coordinate_of_nearly_nothing_is_nothing():
+    """A denormal number in one corner once moved the IoU of a floor by half a per cent."""
+    square = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
+    nearly = square.copy()
+    nearly[0, 1] = 5e-324
+    assert region(nearly).equals_exact(region(square), 0.0)

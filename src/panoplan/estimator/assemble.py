@@ -89,15 +89,20 @@ def assemble(state: State, config: Config) -> FloorPlan:
         walls += len(made.walls)
         rooms[room.number] = made
     shared, found = _joints(state, rooms, composed, to_plan, length)
+    positions = np.array([camera.position_su for camera in state.cameras]).reshape(-1, 2)
+    shifts = np.array([camera.correction.shift for camera in state.cameras]).reshape(-1, 2)
+    # The heading runs clockwise, the correction counter-clockwise.
+    headings = wrapped(np.array([c.heading - c.correction.turn for c in state.cameras]))
     trajectory = tuple(
         PlanPose(
-            camera.keyframe,
-            to_plan(ch_per_su * camera.position_su + camera.correction.shift),
-            # The heading runs clockwise, the correction counter-clockwise.
-            float(wrapped(camera.heading - camera.correction.turn)),
-            None if camera.room is None else room_id(camera.room),
+            camera.keyframe, place, heading, None if camera.room is None else room_id(camera.room)
         )
-        for camera in state.cameras
+        for camera, place, heading in zip(
+            state.cameras,
+            to_plan(ch_per_su * positions + shifts),
+            headings.tolist(),
+            strict=True,
+        )
     )
     return FloorPlan(
         unit=unit,

@@ -79,12 +79,17 @@ def region(polygon: FloatArray, holes: Sequence[FloatArray] = ()) -> Region:
     Returns:
         A valid Polygon or MultiPolygon; of a ring that crosses itself, the parts it encloses.
     """
-    shape = shapely.Polygon(polygon, [hole for hole in holes if len(hole) >= 3])
+    # Coordinates of nearly nothing make unions wrong by whole per cents.
+    rings = [np.round(ring, _DIGITS) + 0.0 for ring in (polygon, *holes)]
+    shape = shapely.Polygon(rings[0], [hole for hole in rings[1:] if len(hole) >= 3])
     if shape.is_valid:
         return shape
     made = shapely.make_valid(shape)
     parts = [part for part in shapely.get_parts(made) if part.geom_type.endswith("Polygon")]
     return shapely.union_all(parts) if parts else shapely.Polygon()
+
+
+_DIGITS = 9
 
 
 def iou_matrix(true: Sequence[Region], predicted: Sequence[Region]) -> FloatArray:
