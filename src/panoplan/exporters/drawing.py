@@ -83,6 +83,10 @@ class Sheet:
         """Printer's points as a length in plan units."""
         return points / self.points_per_unit
 
+    def points(self, units: float) -> float:
+        """A length in plan units as printer's points."""
+        return units * self.points_per_unit
+
 
 def content_bounds(plan: FloorPlan) -> tuple[FloatArray, FloatArray]:
     """Least and greatest coordinates of all that a plan holds, (0, 0) and (1, 1) if nothing."""
@@ -368,6 +372,8 @@ def _segments(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
     from matplotlib.collections import LineCollection
 
     found: list[Artist] = []
+    # A door goes through both faces of a shared wall.
+    through = {frozenset(wall.walls): sheet.points(wall.thickness) for wall in plan.shared_walls}
     kinds = (
         ("doors", plan.doors, DOOR_COLOUR, "solid"),
         ("passages", plan.openings, QUIET_COLOUR, (0, (2.0, 1.5))),
@@ -376,11 +382,15 @@ def _segments(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
     for name, items, colour, style in kinds:
         if not items:
             continue
-        for width, ink, dash in ((3.4, "white", "solid"), (1.3, colour, style)):
+        gaps = [3.4 * sheet.weight + through.get(frozenset(item.walls), 0.0) for item in items]
+        for widths, ink, dash in (
+            (gaps, "white", "solid"),
+            ([1.3 * sheet.weight] * len(items), colour, style),
+        ):
             lines = LineCollection(
                 [item.segment for item in items],
                 colors=ink,
-                linewidths=width * sheet.weight,
+                linewidths=widths,
                 linestyles=[dash],
                 capstyle="butt",
             )
