@@ -67,6 +67,7 @@ def plan(rooms=FLAT, cameras=CAMERAS, *, unit="m", names=None, **fields):
                 "no closed path" if polygon is None else None,
                 ("kf0",),
                 walls,
+                area_sigma=None if polygon is None else 0.2,
                 ceiling_height=None if polygon is None else 2.5,
                 orientations=() if polygon is None else (0.0, 1.5),
                 flags=("orientation_below_gate",) if k else (),

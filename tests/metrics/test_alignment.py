@@ -100,6 +100,8 @@ def test_everything_of_a_plan_moves():
     assert moved.rooms[0].walls[1].b == pytest.approx([-5.0, 8.0])
     assert moved.rooms[0].walls[1].sigma == pytest.approx(0.04)
     assert moved.rooms[0].orientations == pytest.approx((np.pi / 2, 1.5 + np.pi / 2))
+    assert moved.rooms[0].area_sigma == pytest.approx(0.8)
+    assert moved.shared_walls[0].thickness == pytest.approx(0.24)
     assert moved.doors[0].segment[0] == pytest.approx([-1.0, 8.0])
     # A camera that looks along +z (heading 0) then looks along -x (heading -π/2).
     assert moved.trajectory[0].heading == pytest.approx(-np.pi / 2)

@@ -87,6 +87,11 @@ def _row(report: Report, keyframes: int, warmup: int) -> dict[str, Any]:
         "walls_stated": walls.stated,
         "walls_within_1_sigma": walls.within_1_sigma,
         "walls_within_2_sigma": walls.within_2_sigma,
+        "areas": [
+            [pair.area_error_percent, pair.area_sigma_percent]
+            for pair in rooms.pairs
+            if pair.area_sigma_percent is not None
+        ],
         "doors": [report.doors.hits, report.doors.true, report.doors.predicted],
         "openings": [report.openings.hits, report.openings.true, report.openings.predicted],
         "ate_cm": None if report.trajectory is None else report.trajectory.rmse_cm,
@@ -106,6 +111,10 @@ def _summary(scenes: list[dict[str, Any]]) -> dict[str, Any]:
         told = [(s[name], s["walls_stated"]) for s in scenes if s[name] is not None]
         counted = sum(count for _, count in told)
         return sum(value * count for value, count in told) / counted if counted else None
+
+    def areas(reach: int) -> float | None:
+        told = [abs(error) <= reach * sigma for s in scenes for error, sigma in s["areas"]]
+        return float(np.mean(told)) if told else None
 
     def found(name: str) -> dict[str, float | None]:
         hits, true, predicted = (sum(scene[name][k] for scene in scenes) for k in range(3))
@@ -128,6 +137,8 @@ def _summary(scenes: list[dict[str, Any]]) -> dict[str, Any]:
         "wall_cm": mean("wall_cm"),
         "walls_within_1_sigma": share("walls_within_1_sigma"),
         "walls_within_2_sigma": share("walls_within_2_sigma"),
+        "areas_within_1_sigma": areas(1),
+        "areas_within_2_sigma": areas(2),
         "doors": found("doors"),
         "openings": found("openings"),
         "odometry_ate_cm": mean("odometry_ate_cm"),

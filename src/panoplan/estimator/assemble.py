@@ -12,6 +12,7 @@ from panoplan.config import Config, as_dict
 from panoplan.estimator.state import PlacedCamera, RoomState, State, room_id
 from panoplan.geometry.angles import line_angle, wrapped
 from panoplan.geometry.hits import edge_directions
+from panoplan.geometry.polygons import signed_area
 from panoplan.stages import orientation
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import (
@@ -221,7 +222,30 @@ def _room(
         for k, sigma in enumerate(sigmas)
     )
     holes = tuple(to_plan(hole) for hole in shape.holes)
-    return replace(made, polygon=ring, walls=walls, holes=holes)
+    area_sigma = None
+    if shape.sigmas is not None:
+        area_sigma = length**2 * _area_sigma(shape, len(cameras), scale_sigma, config)
+    return replace(made, polygon=ring, walls=walls, holes=holes, area_sigma=area_sigma)
+
+
+def _area_sigma(shape: RoomShape, views: int, scale_sigma: float, config: Config) -> float:
+    """Standard deviation of a room's area in square camera heights.
+
+    Of its walls, each by itself; and of its size, which all views err in together by the scale,
+    and each by its own factor. Where the room lies does not matter.
+    """
+    assert shape.polygon is not None
+    assert shape.sigmas is not None
+    _, length = edge_directions(shape.polygon)
+    sigmas = np.where(np.isnan(shape.sigmas), config.partition.unfitted_sigma_ch, shape.sigmas)
+    # Views from several places tell each other's factor by the odometry between them.
+    own = config.registration.scale_bias / np.sqrt(1 + _TOLD * max(0, views - 1))
+    size = 2 * abs(signed_area(shape.polygon)) * np.hypot(scale_sigma, own)
+    return float(np.sqrt(((length * sigmas) ** 2).sum() + size**2))
+
+
+_TOLD = 4.0
+"""A further view tells as much of the size as four more of the same place: on simulated flats."""
 
 
 def _place_sigmas(

@@ -206,6 +206,7 @@ def _room_to_dict(room: Room) -> dict[str, Any]:
         "holes": [_numbers(hole) for hole in room.holes],
         "failure": (room.failure or "no shape found") if room.polygon is None else None,
         "area": _length(area),
+        "area_sigma": _length(room.area_sigma),
         "ceiling_height": _length(room.ceiling_height),
         "keyframes": list(room.keyframes),
         "walls": [
@@ -228,6 +229,7 @@ def _room_from_dict(data: dict[str, Any]) -> Room:
             Wall(w["id"], _array(w["a"]), _array(w["b"]), w["sigma"]) for w in data["walls"]
         ),
         holes=tuple(_array(hole) for hole in data["holes"]),
+        area_sigma=data["area_sigma"],
         ceiling_height=data["ceiling_height"],
         level=data["level"],
         orientations=tuple(data["orientations"]),

@@ -251,11 +251,13 @@ def _moved_wall(wall: Wall, transform: Similarity) -> Wall:
 
 def _moved_room(room: Room, transform: Similarity) -> Room:
     height = None if room.ceiling_height is None else transform.scale * room.ceiling_height
+    area_sigma = None if room.area_sigma is None else transform.scale**2 * room.area_sigma
     return replace(
         room,
         polygon=None if room.polygon is None else transform.apply(room.polygon),
         holes=tuple(transform.apply(hole) for hole in room.holes),
         walls=tuple(_moved_wall(wall, transform) for wall in room.walls),
+        area_sigma=area_sigma,
         ceiling_height=height,
         orientations=tuple(float((o + transform.rotation_rad) % np.pi) for o in room.orientations),
     )

@@ -42,6 +42,7 @@ class RoomPair:
         predicted: id of the predicted room.
         iou: of the two.
         area_error_percent: (predicted - true) / true.
+        area_sigma_percent: standard deviation that the plan states, of the true area; or None.
         outline_cm: mean distance between the outlines, both ways averaged.
     """
 
@@ -49,6 +50,7 @@ class RoomPair:
     predicted: str
     iou: float
     area_error_percent: float
+    area_sigma_percent: float | None
     outline_cm: float
 
 
@@ -296,7 +298,14 @@ def _room_figures(of: _Compared, without_polygon: int) -> RoomFigures:
         scores=scores,
         scores_visited=visited_scores,
         pairs=tuple(
-            RoomPair(of.true[m.true].id, of.predicted[m.predicted].id, m.iou, float(a), float(d))
+            RoomPair(
+                of.true[m.true].id,
+                of.predicted[m.predicted].id,
+                m.iou,
+                float(a),
+                _percent(of.predicted[m.predicted].area_sigma, of.true_regions[m.true].area),
+                float(d),
+            )
             for m, a, d in zip(of.matches, area, outline, strict=True)
         ),
         mean_iou=_mean(np.array([match.iou for match in of.matches])),
@@ -308,6 +317,10 @@ def _room_figures(of: _Compared, without_polygon: int) -> RoomFigures:
         outline_predicted_to_true_cm=_mean(back),
         overlap_m2=_overlap(of),
     )
+
+
+def _percent(value: float | None, of: float) -> float | None:
+    return None if value is None else 100.0 * value / of
 
 
 def _outline_distances(of: _Compared) -> tuple[FloatArray, FloatArray]:

@@ -72,6 +72,7 @@ class Room:
         keyframes: ids of the keyframes assigned to it, in the order of the walk.
         walls: one a polygon edge, in order.
         holes: open polygons, clockwise, of what is not room inside `polygon`.
+        area_sigma: standard deviation of the area in square plan units, None where not known.
         ceiling_height: floor to ceiling in plan units, None where not known.
         level: storey, 0 for that of the first keyframe.
         orientations: directions of the walls in [0, π) rad, plan frame, best supported first.
@@ -85,6 +86,7 @@ class Room:
     keyframes: tuple[str, ...]
     walls: tuple[Wall, ...] = ()
     holes: tuple[FloatArray, ...] = ()
+    area_sigma: float | None = None
     ceiling_height: float | None = None
     level: int = 0
     orientations: tuple[float, ...] = ()
