@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from itertools import groupby
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from contourpy import contour_generator
 
 from panoplan.exporters.drawing import (
     CORNER_COLOUR,
@@ -14,310 +17,879 @@ from panoplan.exporters.drawing import (
     PATH_COLOUR,
     QUIET_COLOUR,
     WALL_COLOUR,
+    Sheet,
+    draw_sheet,
+    plan_text,
+    room_colours,
+    unit_name,
 )
+from panoplan.exporters.layers import add_layer
 from panoplan.exporters.png import figure_png
-from panoplan.formats.atomic import write_bytes
+from panoplan.formats.atomic import make_folder, write_bytes
 from panoplan.types.arrays import FloatArray
-from panoplan.types.explain import ExplainedRoom, Explanation, Raster
+from panoplan.types.explain import (
+    Cloud,
+    ExplainedRoom,
+    ExplainedRound,
+    ExplainedScale,
+    ExplainedView,
+    Explanation,
+    Grouping,
+    Raster,
+)
+from panoplan.types.plan import Room, ScaleEstimate, Unit
 
 if TYPE_CHECKING:
+    from matplotlib.artist import Artist
     from matplotlib.axes import Axes
+    from matplotlib.colors import Colormap
     from matplotlib.figure import Figure
 
 FOLDER = "explain"
 
-_REASON_COLOURS = {
+REASON_COLOURS = {
     "too few columns": "#8D99A6",
     "no plane fits": "#D9480F",
     "seen edge-on": "#7048A8",
     "too far": "#B08900",
 }
-_CLOUD_CELLS = 420
-_PANEL_IN = 3.4
-_MOST_PANELS = 30
-_TITLE_IN, _LEGEND_IN = 0.55, 0.4
+ROUND_COLOURS = ("#B08900", "#2B8A3E", "#C2255C")
+FITTED_COLOUR = CORNER_COLOUR
+_CONTEXT_COLOUR = "#C3C9D0"
+_FRAME_COLOUR = "#DDE1E6"
+_INK = ("#FFFFFF", "#D5E3F0", "#7FAAD4", "#1D4E89", "#0B2545")
+_SIGNED = ("#C4622D", "#F0C5A3", "#FFFFFF", "#B5D2EA", "#5E9BCB")
+
+_DOTS_PER_INCH = 160
+_HEAD_IN, _FOOT_IN = 0.95, 0.55
+_EDGE_IN = 0.35
+_WEIGHT = 0.85
+_OURS = re.compile(r"[1-4]_(scale|rooms|views|walls|floors|rounds)(_\w+)?\.png")
+
+Bounds = tuple[FloatArray, FloatArray]
 
 
-def write_explanation(folder: Path, explanation: Explanation) -> tuple[Path, ...]:
-    """Writes scale.png, rooms.png, walls.png and shapes.png.
+def write_explanation(
+    folder: Path,
+    explanation: Explanation,
+    progress: Callable[[int, int], None] = lambda done, total: None,
+) -> tuple[Path, ...]:
+    """Writes a picture a stage; those of an earlier explanation go.
+
+    These are 1_scale.png and 2_rooms.png, then for fused rooms 3_views.png and 4_floors.png, for
+    rooms by iSPA 3_walls.png and 4_rounds_ROOM.png; where the rooms or levels do not fit on one,
+    numbered ones.
 
     Args:
         folder: made where it does not exist.
         explanation: what is drawn.
+        progress: called with (pictures done, pictures in all).
 
     Returns:
-        The files written: without rooms only scale.png.
+        The files written.
 
     Raises:
         InputError: the place cannot be written.
     """
-    figures = {"scale.png": scale_figure(explanation)}
-    if explanation.rooms:
-        figures["rooms.png"] = rooms_figure(explanation)
-        figures["walls.png"] = walls_figure(explanation)
-        figures["shapes.png"] = shapes_figure(explanation)
-    folder.mkdir(parents=True, exist_ok=True)
+    make_folder(folder)
+    forget_explanation(folder)
+    drawn = _pictures(explanation)
     written = []
-    for name, figure in figures.items():
-        path = folder / name
-        write_bytes(path, figure_png(figure))
-        written.append(path)
+    for done, (name, draw) in enumerate(drawn):
+        progress(done, len(drawn))
+        figure = draw()
+        long_side = _DOTS_PER_INCH * float(max(figure.get_size_inches()))
+        write_bytes(folder / name, figure_png(figure, round(long_side)))
+        written.append(folder / name)
     return tuple(written)
 
 
+def forget_explanation(folder: Path) -> None:
+    """Removes the pictures of an earlier explanation, and the folder if nothing else is in it."""
+    if not folder.is_dir():
+        return
+    for path in folder.iterdir():
+        if _OURS.fullmatch(path.name):
+            path.unlink()
+
+
+def _pictures(explanation: Explanation) -> list[tuple[str, Callable[[], Figure]]]:
+    """Names and how to draw them, so that only one figure is held at a time."""
+    found: list[tuple[str, Callable[[], Figure]]] = [
+        ("1_scale.png", lambda: scale_figure(explanation))
+    ]
+    rooms = explanation.rooms
+
+    def paged(stem: str, per_page: int, draw: Any, shown: Sequence[ExplainedRoom]) -> None:
+        pages = [shown[k : k + per_page] for k in range(0, len(shown), per_page)]
+        for number, page in enumerate(pages, 1):
+            name = f"{stem}_{number}.png" if len(pages) > 1 else f"{stem}.png"
+            found.append((name, lambda page=page: draw(explanation, page)))
+
+    paged("2_rooms", 20, rooms_figure, rooms)
+    for grouping in explanation.groupings:
+        several = len(explanation.groupings) > 1
+        name = f"3_views_level_{grouping.level}.png" if several else "3_views.png"
+        found.append((name, lambda grouping=grouping: views_figure(explanation, grouping)))
+    paged("3_walls", 12, walls_figure, [room for room in rooms if room.walls])
+    paged("4_floors", 12, floors_figure, [room for room in rooms if room.floor])
+    for room in rooms:
+        if room.walls and room.walls.rounds:
+            name = f"4_rounds_{room.id}.png"
+            found.append((name, lambda room=room: rounds_figure(explanation, room)))
+    return found
+
+
+# Scale.
+
+
 def scale_figure(explanation: Explanation) -> Figure:
-    """The cloud of all boundary points at three scales, and the entropy over the scale."""
-    clouds = explanation.clouds
-    figure, grid = _figure(_PANEL_IN * max(3, len(clouds)), 2 * _PANEL_IN, 2, len(clouds))
-    chosen = next(points for factor, points in clouds if factor == 1.0)
-    low, high = _extent([chosen, explanation.path])
+    """All boundary points at some scales, and the entropy over the scale."""
+    scale, unit = explanation.scale, explanation.unit
+    clouds = scale.clouds
+    cell = explanation.config.scale.cells_ch[0] * _camera_height(explanation)
+    bounds = _bounds([cloud.points for cloud in clouds])
+    columns = max(len(clouds), 3)
+    panel = 3.4 if columns > 3 else 4.4
+    width, height = bounds[1] - bounds[0]
+    tall = panel * float(np.clip(height / width, 0.35, 1.3)) + 0.55
+    curve_in = 3.6
+    figure = _figure(columns * panel, tall + curve_in)
+    _heading(
+        figure,
+        "Scale of the trajectory",
+        f"Above, all boundary points in cells of {_length(cell, unit)}, as the entropy sees them: "
+        "at the right scale walls seen from several places lie on one another. Below, the "
+        "objective that the search minimises (Eq. 3-4).",
+    )
+    counts = [_counted(cloud.points, bounds, cell) for cloud in clouds]
+    filled = [raster.values[raster.values > 0] for raster in counts]
+    most = max((float(np.quantile(some, 0.97)) for some in filled if len(some)), default=1.0)
+    for k, (cloud, raster) in enumerate(zip(clouds, counts, strict=True)):
+        axes = _axes(figure, (k * panel, curve_in), (panel, tall))
+        sheet = draw_sheet(axes, bounds, unit, title=_cloud_title(cloud, scale), weight=_WEIGHT)
+        image = _image(axes, raster, _colours(_INK), 0.0, max(most, 1.0))
+        _put(axes, sheet, "cloud", [image], 1)
+    _draw_objective(figure, explanation, curve_in, columns * panel)
+    return figure
+
+
+def _cloud_title(cloud: Cloud, scale: ExplainedScale) -> str:
+    used = None if scale.used is None else scale.used.ch_per_su
+    if used is None:
+        return "no scale: cameras on one spot"
+    told = f"s = {cloud.ch_per_su:.4g}"
+    if cloud.adjusted:
+        return f"cameras adjusted, {told}"
+    percent = 100 * (cloud.ch_per_su / used - 1)
+    return f"{told}, the one used" if abs(percent) < 1e-6 else f"{told}  ({percent:+.0f} %)"
+
+
+def _counted(points: FloatArray, bounds: Bounds, cell: float) -> Raster:
+    low, high = bounds
+    size = np.ceil((high - low) / cell).astype(int)
+    at = np.floor((points - low) / cell).astype(int)
+    at = at[((at >= 0) & (at < size)).all(axis=1)]
+    counts = np.zeros(tuple(size))
+    np.add.at(counts, tuple(at.T), 1.0)
+    return Raster(low, cell * np.eye(2), counts)
+
+
+def _draw_objective(figure: Figure, explanation: Explanation, high: float, wide: float) -> None:
+    """The objective over the whole range, near its bottom, and the figures in words."""
     scale = explanation.scale
-    found = None if scale is None else scale.ch_per_su
-    for k, (factor, points) in enumerate(clouds):
-        axes = figure.add_subplot(grid[0, k])
-        _draw_cloud(axes, points, low, high)
-        told = "" if found is None else f"s = {factor * found:.4g}"
-        mark = " (found)" if factor == 1.0 and found is not None else ""
-        _plan_axes(axes, low, high, f"{told}{mark}" or "camera heights")
-    axes = figure.add_subplot(grid[1, :])
-    if scale is None or scale.curve is None or found is None:
-        axes.set_axis_off()
-        why = "not known" if found is None else "given, not searched"
-        axes.text(0.5, 0.5, f"The scale is {why}.", ha="center", va="center", fontsize=11)
-        return figure
-    s, objective = scale.curve.T
-    axes.plot(s, objective, ".-", color=PATH_COLOUR, markersize=3, linewidth=1, label="objective")
-    axes.axvline(found, color=CORNER_COLOUR, linewidth=1.2, label=f"found: {found:.5g}")
-    if scale.sigma:
-        reach = scale.sigma * found
-        axes.axvspan(
-            found - reach,
-            found + reach,
-            color=CORNER_COLOUR,
-            alpha=0.18,
-            linewidth=0,
-            label=f"± {100 * scale.sigma:.2g} %",
+    used = scale.used
+    facts_in, gap = 3.1, 0.75
+    each = (wide - facts_in - 2 * gap - 0.2) / 2
+    y, tall = 0.25, high - 0.75
+    facts = _facts(scale)
+    for k, (text, colour) in enumerate(facts):
+        _note(figure, wide - facts_in + 0.1, y + tall - 0.24 * k, text, 8.5, colour)
+    searched = scale.searched
+    if searched is None or searched.curve is None or used is None:
+        return
+    s, objective = searched.curve.T
+    settings = explanation.config.scale
+    label = "entropy" if settings.saturation == 0 else "entropy of saturated counts"
+    label += " less that of the control" if settings.control else ""
+    centre = searched.ch_per_su or used.ch_per_su or float(s[np.argmin(objective)])
+    marks = [m for m in (used.ch_per_su, searched.ch_per_su, scale.adjusted_ch_per_su) if m]
+    reach = max(0.12 * centre, *(1.5 * abs(mark - centre) for mark in marks))
+    near = np.abs(s - centre) <= reach
+    ranges = (
+        (searched.search_range or (float(s[0]), float(s[-1])), np.ones(len(s), dtype=bool)),
+        ((centre - reach, centre + reach), near if near.sum() > 1 else np.ones(len(s), bool)),
+    )
+    for k, ((low, top), shown) in enumerate(ranges):
+        axes = _axes(figure, (gap + k * (each + gap), y), (each, tall))
+        axes.plot(
+            s[shown],
+            objective[shown],
+            "-o",
+            color=PATH_COLOUR,
+            markersize=(1.6, 3.0)[k],
+            linewidth=(0.9, 1.1)[k],
         )
-    if scale.search_range is not None:
-        axes.set_xlim(*scale.search_range)
-    axes.set_xlabel("camera heights a trajectory unit")
-    axes.set_ylabel("entropy, control subtracted where set")
-    axes.grid(alpha=0.25)
-    axes.legend(frameon=False, fontsize=9)
-    axes.set_title("Entropy over the scale (Eq. 3-4)", fontsize=11)
-    return figure
+        _draw_scales(axes, scale)
+        axes.set_xlim(low, top)
+        spread = float(np.ptp(objective[shown])) or 1.0
+        axes.set_ylim(
+            objective[shown].min() - 0.08 * spread, objective[shown].max() + 0.08 * spread
+        )
+        _dress(axes, "whole range searched" if k == 0 else "near the bottom")
+        axes.set_xlabel("s: camera heights a trajectory unit", fontsize=8, fontfamily=FONT)
+        if k == 0:
+            axes.set_ylabel(f"{label} (nats)", fontsize=8, fontfamily=FONT)
 
 
-def rooms_figure(explanation: Explanation) -> Figure:
-    """The density of each room with its cameras, and the path."""
-    figure, panels = _panels(explanation.rooms, "Room densities and the path")
-    for axes, room in panels:
-        low, high = _extent([_box(room.density), room.cameras])
-        _image(axes, room.density, "Blues", 0.0, 1.0)
-        inside = _within(explanation.path, low, high)
-        axes.plot(*inside.T, "-", color=QUIET_COLOUR, linewidth=0.7, alpha=0.7)
-        axes.plot(*room.cameras.T, "o", color=CORNER_COLOUR, markersize=3)
-        if np.nanmax(room.density.values) > 0.5:
-            _contour(axes, room.density, 0.5, WALL_COLOUR)
-        _plan_axes(axes, low, high, f"{room.id}, keyframes: {len(room.cameras)}")
-    return figure
+def _draw_scales(axes: Axes, scale: ExplainedScale) -> None:
+    used, searched = scale.used, scale.searched
+    if used is not None and used.ch_per_su is not None:
+        if used.sigma:
+            reach = used.sigma * used.ch_per_su
+            ends = (used.ch_per_su - reach, used.ch_per_su + reach)
+            axes.axvspan(*ends, color=CORNER_COLOUR, alpha=0.15, linewidth=0)
+        axes.axvline(used.ch_per_su, color=CORNER_COLOUR, linewidth=1.2)
+    if searched is not None and searched is not used and searched.ch_per_su is not None:
+        axes.axvline(searched.ch_per_su, color=PATH_COLOUR, linewidth=1.2, linestyle=(0, (4, 2)))
+    if scale.adjusted_ch_per_su is not None:
+        axes.axvline(
+            scale.adjusted_ch_per_su, color=_ADJUSTED_COLOUR, linewidth=1.2, linestyle=(0, (1, 1.5))
+        )
 
 
-def walls_figure(explanation: Explanation) -> Figure:
-    """What became walls: planes kept and rejected, or the columns that walls were fitted to."""
-    fitted = any(room.columns is not None for room in explanation.rooms)
-    title = "Raw columns and the walls fitted to them" if fitted else "Planes kept and rejected"
-    figure, panels = _panels(explanation.rooms, title)
-    for axes, room in panels:
-        around = [*room.kept, *([] if room.outline is None else [room.outline])]
-        low, high = _extent([*around, room.cameras])
-        if room.columns is not None:
-            inside = _within(room.columns, low - 0.3, high + 0.3)
-            axes.plot(*inside.T, ".", color=PATH_COLOUR, markersize=0.8, alpha=0.35)
-        for reason, points in room.rejected:
-            inside = _within(points, low - 0.3, high + 0.3)
-            axes.plot(*inside.T, ".", color=_REASON_COLOURS[reason], markersize=1.2, alpha=0.6)
-        for ends in room.kept:
-            axes.plot(*ends.T, "-", color=PATH_COLOUR, linewidth=0.9, alpha=0.6)
-        if room.outline is not None and fitted:
-            _ring(axes, room.outline, WALL_COLOUR, 1.2)
-        axes.plot(*room.cameras.T, "o", color=CORNER_COLOUR, markersize=2)
-        told = f"{len(room.kept)} kept, {len(room.rejected)} rejected"
-        if fitted:
-            told = _sigma_text(room)
-        _plan_axes(axes, low, high, f"{room.id}: {told}")
-    if not fitted:
-        handles = [_handle(colour, reason) for reason, colour in _REASON_COLOURS.items()] + [
-            _handle(PATH_COLOUR, "kept")
+_ADJUSTED_COLOUR = "#2B8A3E"
+
+
+def _facts(scale: ExplainedScale) -> list[tuple[str, str]]:
+    used, searched = scale.used, scale.searched
+    if used is None or used.ch_per_su is None:
+        return [("The scale is not known.", WALL_COLOUR)]
+    told = f"used: s = {used.ch_per_su:.5g}"
+    facts = [(told, CORNER_COLOUR)]
+    if used.method == "entropy":
+        sigma = "not known" if used.sigma is None else f"± {100 * used.sigma:.2g} % (band)"
+        facts += [
+            (f"sigma {sigma}", WALL_COLOUR),
+            (f"from {used.keyframes_used} keyframes", WALL_COLOUR),
+            ("settled" if used.converged else "had not settled", WALL_COLOUR),
         ]
-        figure.legend(handles=handles, loc="lower center", ncols=5, frameon=False, fontsize=9)
-    return figure
-
-
-def shapes_figure(explanation: Explanation) -> Figure:
-    """How outlines came about: rounds of iSPA, or the fused signed distance and its zero line."""
-    fused = any(room.distance is not None for room in explanation.rooms)
-    title = "Fused signed distance, fitted outline, outline in the plan" if fused else "iSPA rounds"
-    figure, panels = _panels(explanation.rooms, title)
-    for axes, room in panels:
-        parts = [p for p in (room.outline, room.polygon, *room.rounds) if p is not None]
-        low, high = _extent([*(parts or [_box(room.density)]), room.cameras])
-        if room.distance is not None:
-            reach = float(np.nanmax(np.abs(room.distance.values)))
-            _image(axes, room.distance, "RdBu", -reach, reach)
-            _contour(axes, room.distance, 0.0, QUIET_COLOUR)
-        else:
-            _image(axes, room.density, "Greys", 0.0, 2.0)
-        for number, ring in enumerate(room.rounds):
-            colour = ROOM_STRONG[number % len(ROOM_STRONG)]
-            _ring(axes, ring, colour, 0.9 + 0.5 * number)
-        if room.outline is not None and not room.rounds:
-            _ring(axes, room.outline, CORNER_COLOUR, 1.0)
-        if room.polygon is not None and fused:
-            _ring(axes, room.polygon, WALL_COLOUR, 1.6)
-        told = room.failure or (f"{len(room.rounds)} rounds" if room.rounds else "")
-        corners = "" if room.polygon is None else f"{len(room.polygon)} corners"
-        text = ", ".join(part for part in (corners, told) if part)
-        _plan_axes(axes, low, high, f"{room.id}: {text}")
-    if fused:
-        handles = [
-            _handle(QUIET_COLOUR, "zero of the field"),
-            _handle(CORNER_COLOUR, "fitted outline"),
-            _handle(WALL_COLOUR, "in the plan"),
-        ]
+        if used.at_edge:
+            facts.append(
+                ("at the edge of the range: do not trust it", REASON_COLOURS["no plane fits"])
+            )
     else:
-        most = max(len(room.rounds) for room in explanation.rooms)
-        handles = [
-            _handle(ROOM_STRONG[k % len(ROOM_STRONG)], f"round {k + 1}") for k in range(most)
+        facts.append(("given: unit and camera height known", WALL_COLOUR))
+    if searched is not None and searched is not used and searched.ch_per_su is not None:
+        apart = 100 * (searched.ch_per_su / used.ch_per_su - 1)
+        facts.append((f"layouts alone say {searched.ch_per_su:.5g} ({apart:+.2g} %)", PATH_COLOUR))
+    if searched is not None and searched.search_range is not None:
+        low, high = searched.search_range
+        facts.append((f"range searched {low:.3g} to {high:.3g}", WALL_COLOUR))
+    if scale.adjusted_ch_per_su is not None:
+        apart = 100 * (scale.adjusted_ch_per_su / used.ch_per_su - 1)
+        facts.append(
+            (f"cameras adjusted: {scale.adjusted_ch_per_su:.5g} ({apart:+.2g} %)", _ADJUSTED_COLOUR)
+        )
+    return facts
+
+
+# Rooms.
+
+
+def rooms_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Figure:
+    """The density of each room with its cameras and the camera path."""
+    threshold = explanation.config.rooms.threshold
+    figure, panels = _room_page(
+        rooms,
+        4,
+        3.3,
+        "Rooms and the camera path",
+        "Density of each room: the share of the evidence that says a cell is free floor of this "
+        f"room. Cells from {threshold:g} on are its mask.",
+    )
+    colours = _colours(_INK)
+    for axes, room in panels:
+        views = [view for view in explanation.views if view.room == room.id]
+        bounds = _bounds([_box(room.density), *(view.camera[None] for view in views)])
+        count = f"{len(views)} keyframe" + ("" if len(views) == 1 else "s")
+        sheet = _room_sheet(axes, bounds, explanation.unit, room, count)
+        own = [view.camera for view in views]
+        other = [view.camera for view in explanation.views if view.room != room.id]
+        marks: list[Artist] = [
+            _image(axes, room.density, colours, 0.0, 1.3),
+            _lines(_level(room.density, threshold), WALL_COLOUR, 0.9 * sheet.weight),
+            *_path(explanation.views, sheet),
+            _dots(other, sheet, "white", QUIET_COLOUR, 2.6),
+            _dots(own, sheet, CORNER_COLOUR, "white", 4.6),
         ]
-    figure.legend(handles=handles, loc="lower center", ncols=5, frameon=False, fontsize=9)
+        _put(axes, sheet, "room", marks, 1)
+    _legend(
+        figure,
+        [
+            _swatch("density 0", colours(0.0)),
+            _swatch("½", colours(0.5 / 1.3)),
+            _swatch("1", colours(1 / 1.3)),
+            _stroke("mask", WALL_COLOUR),
+            _stroke("camera path", QUIET_COLOUR),
+            _dot("keyframe of the room", CORNER_COLOUR, "white"),
+            _dot("of another room", "white", QUIET_COLOUR),
+        ],
+    )
     return figure
 
 
-ROOM_STRONG = ("#2B8A3E", "#E67700", "#C2255C", "#1864AB", "#5F3DC4")
+# Views.
 
 
-def _figure(width: float, height: float, rows: int, columns: int) -> tuple[Figure, Any]:
-    import matplotlib
+def views_figure(explanation: Explanation, grouping: Grouping) -> Figure:
+    """What each view sees, in its room's colour, and the common areas that they are grouped by."""
+    config = explanation.config.grouping
+    views = [explanation.views[k] for k in grouping.views]
+    bounds = _bounds(
+        [view.boundary[np.isfinite(view.boundary[:, 0])] for view in views], share=0.01
+    )
+    side, rim = 6.6, 1.1
+    width, height = bounds[1] - bounds[0]
+    wide = float(np.clip(side * width / height, 6.0, 9.5))
+    figure = _figure(wide + side + rim, side)
+    doors = sum(view.doorway for view in views)
+    _heading(
+        figure,
+        "Views grouped into rooms" + (f", level {grouping.level}" if _several(explanation) else ""),
+        "Left, the boundary that each keyframe sees, in the colour of its room. Right, common "
+        "area of each two views over that of the smaller: views are linked while its mean is at "
+        f"least {config.min_overlap:g}, then groups joined or dissolved by what they see. "
+        f"{len(views)} views, {doors} of them from a doorway.",
+    )
+    fills = _fills(explanation.rooms)
+    axes = _axes(figure, (0.0, 0.0), (wide, side))
+    sheet = draw_sheet(axes, bounds, explanation.unit, weight=_WEIGHT)
+    _put(axes, sheet, "rooms", _room_fills(explanation, grouping.level, fills), 1)
+    marks: list[Artist] = []
+    for view in views:
+        ink = _darker(fills.get(view.room, _CONTEXT_COLOUR))
+        marks.append(_lines([view.boundary], ink, 0.8 * sheet.weight, 0.75))
+    marks += _path([view for view in explanation.views if view.level == grouping.level], sheet)
+    for view in views:
+        ink = _darker(fills.get(view.room, _CONTEXT_COLOUR))
+        face, edge = ("white", ink) if view.doorway else (ink, "white")
+        marks.append(_dots([view.camera], sheet, face, edge, 5.0))
+    _put(axes, sheet, "views", marks, 2)
+    _draw_overlaps(figure, explanation, grouping, (wide + rim, 0.3), side - 0.6)
+    _legend(
+        figure,
+        [
+            _stroke("boundary of a view", QUIET_COLOUR),
+            _dot("view", QUIET_COLOUR, "white"),
+            _dot("view from a doorway", "white", QUIET_COLOUR),
+            *(
+                _swatch(f"common area {share:g}", _colours(_INK)(0.8 * share))
+                for share in (0, 0.5, 1)
+            ),
+        ],
+    )
+    return figure
+
+
+def _several(explanation: Explanation) -> bool:
+    return len(explanation.groupings) > 1
+
+
+def _draw_overlaps(
+    figure: Figure,
+    explanation: Explanation,
+    grouping: Grouping,
+    corner: tuple[float, float],
+    side: float,
+) -> None:
+    """The matrix of common areas with a line between rooms, their names where they fit."""
+    count = len(grouping.views)
+    axes = _axes(figure, corner, (side, side))
+    axes.imshow(
+        grouping.overlaps,
+        cmap=_colours(_INK),
+        vmin=0.0,
+        vmax=1.25,
+        interpolation="nearest",
+        extent=(0, count, count, 0),
+    )
+    names = {room.id: room.name for room in explanation.rooms}
+    ids = [explanation.views[k].room for k in grouping.views]
+    start, ticks = 0, []
+    for room, members in groupby(ids):
+        stop = start + len(list(members))
+        for line in (axes.axhline, axes.axvline):
+            line(stop, color=_FRAME_COLOUR, linewidth=0.8)
+        block = [start, stop, stop, start, start], [start, start, stop, stop, start]
+        axes.plot(*block, color=WALL_COLOUR, linewidth=0.9)
+        if (stop - start) * side * 72 / count > 7.5:
+            ticks.append(((start + stop) / 2, names[room]))
+        start = stop
+    axes.set_xlim(0, count)
+    axes.set_ylim(count, 0)
+    axes.set_xticks([])
+    axes.set_yticks([at for at, _ in ticks], [name for _, name in ticks])
+    axes.tick_params(length=0, labelsize=7, labelfontfamily=FONT, labelcolor=WALL_COLOUR)
+    for spine in axes.spines.values():
+        spine.set_color(_FRAME_COLOUR)
+
+
+# Rooms by iSPA.
+
+
+def walls_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Figure:
+    """Pieces of boundary kept as wall planes, and those rejected, with the reason."""
+    config = explanation.config.planes
+    cm = explanation.unit == "m"
+    residual = config.max_residual_ch * _camera_height(explanation)
+    told = f"{100 * residual:.0f} cm" if cm else f"{residual:g} camera heights"
+    figure, panels = _room_page(
+        rooms,
+        3,
+        4.3,
+        "Wall planes kept and rejected",
+        "Each layout's boundary is split at corners and jumps; a piece is kept where "
+        f"{100 * config.min_inlier_ratio:.0f} % of its columns lie within {told} of one line.",
+    )
+    for axes, room in panels:
+        assert room.walls is not None
+        kept, rejected = room.walls.kept, room.walls.rejected
+        views = [view for view in explanation.views if view.room == room.id]
+        bounds = _bounds([_box(room.density), *kept], share=0.01)
+        count = f"{len(kept)} kept, {len(rejected)} rejected"
+        sheet = _room_sheet(axes, bounds, explanation.unit, room, count)
+        marks: list[Artist] = [
+            _lines([view.boundary for view in views], _CONTEXT_COLOUR, 0.6 * sheet.weight),
+            _lines(kept, PATH_COLOUR, 1.3 * sheet.weight, 0.8),
+        ]
+        for reason, colour in REASON_COLOURS.items():
+            pieces = [points for why, points in rejected if why == reason]
+            if pieces:
+                marks.append(_dots(np.concatenate(pieces), sheet, colour, "none", 2.2))
+        marks.append(_dots([view.camera for view in views], sheet, CORNER_COLOUR, "white", 4.6))
+        _put(axes, sheet, "walls", marks, 1)
+    counts = {
+        reason: sum(why == reason for room in rooms if room.walls for why, _ in room.walls.rejected)
+        for reason in REASON_COLOURS
+    }
+    total = sum(len(room.walls.kept) for room in rooms if room.walls)
+    _legend(
+        figure,
+        [
+            _stroke(f"kept ({total})", PATH_COLOUR),
+            *(
+                _dot(f"rejected, {reason} ({counts[reason]})", colour, "none")
+                for reason, colour in REASON_COLOURS.items()
+            ),
+            _stroke("boundary", _CONTEXT_COLOUR),
+            _dot("keyframe", CORNER_COLOUR, "white"),
+        ],
+    )
+    return figure
+
+
+def rounds_figure(explanation: Explanation, room: ExplainedRoom) -> Figure:
+    """Grid, mask, wall density, candidates and shortest path of each round."""
+    assert room.walls is not None
+    rounds = room.walls.rounds
+    panel = 4.5
+    figure = _figure(panel * len(rounds), panel)
+    _heading(
+        figure,
+        f"{room.name}: iterative shortest path",
+        "The cheapest closed path through corner candidates around the room: along walls, in their "
+        "directions, around the mask, with few corners (Eq. 8-11)."
+        + (f" No shape: {room.failure}." if room.failure else ""),
+    )
+    bounds = _bounds([rounds[0].candidates, *(r.corners for r in rounds if r.corners is not None)])
+    colours = _colours(("#FFFFFF", "#C9D1DA", "#5B636E", "#2B3038"))
+    for number, made in enumerate(rounds):
+        axes = _axes(figure, (number * panel, 0.0), (panel, panel))
+        sheet = draw_sheet(
+            axes,
+            bounds,
+            explanation.unit,
+            title=f"Round {number + 1}",
+            told=_round_text(made, explanation.unit),
+            weight=_WEIGHT,
+        )
+        _put(axes, sheet, "round", _round_marks(axes, sheet, rounds, number), 1)
+    _legend(
+        figure,
+        [
+            _swatch("wall density", colours(0.6)),
+            _swatch("mask", _MASK_COLOUR),
+            _stroke("grid", _FRAME_COLOUR),
+            _dot("candidate", _CANDIDATE_COLOUR, "none"),
+            _stroke("path of the round before", QUIET_COLOUR, (0, (3, 2))),
+            *(
+                _stroke(f"path of round {k + 1}", ROUND_COLOURS[k % len(ROUND_COLOURS)])
+                for k in range(len(rounds))
+            ),
+        ],
+    )
+    return figure
+
+
+_MASK_COLOUR = "#E3EEF7"
+_CANDIDATE_COLOUR = "#4AA3DF"
+
+
+def _round_text(made: ExplainedRound, unit: Unit) -> str:
+    n, m = made.wall.values.shape
+    corners = "no path" if made.corners is None else f"{len(made.corners)} corners"
+    cell = _length(made.wall.cell, unit)
+    return f"{n} × {m} cells of {cell}, {len(made.candidates)} candidates, {corners}"
+
+
+def _round_marks(
+    axes: Axes, sheet: Sheet, rounds: Sequence[ExplainedRound], number: int
+) -> list[Artist]:
+    made = rounds[number]
+    n, m = made.wall.values.shape
+    wall = _colours(("#FFFFFF00", "#5B636E", "#2B3038"))
+    mask = _colours(("#FFFFFF00", _MASK_COLOUR))
+    lines = [np.array([[i, 0], [i, m]], dtype=float) for i in range(n + 1)]
+    lines += [np.array([[0, j], [n, j]], dtype=float) for j in range(m + 1)]
+    marks: list[Artist] = [
+        _image(axes, Raster(made.wall.origin, made.wall.axes, made.mask.astype(float)), mask, 0, 1),
+        _lines([made.wall.at(line) for line in lines], _FRAME_COLOUR, 0.3 * sheet.weight),
+        _image(axes, made.wall, wall, 0.0, 1.2),
+        _dots(made.candidates, sheet, _CANDIDATE_COLOUR, "none", 1.7),
+    ]
+    before = rounds[number - 1].corners if number else None
+    if before is not None:
+        marks.append(_ring(before, QUIET_COLOUR, 0.9 * sheet.weight, (0, (3, 2))))
+    if made.corners is not None:
+        colour = ROUND_COLOURS[number % len(ROUND_COLOURS)]
+        marks.append(_ring(made.corners, colour, 1.7 * sheet.weight))
+        marks.append(_dots(made.corners, sheet, colour, "white", 5.0))
+    return marks
+
+
+# Rooms by fusion.
+
+
+def floors_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Figure:
+    """The fused signed distance of each room, its cut zero line, the walls fitted and placed."""
+    reach = explanation.config.fusion.truncation_ch * _camera_height(explanation)
+    figure, panels = _room_page(
+        rooms,
+        3,
+        4.3,
+        "Fused floors and their walls",
+        "Signed distance to the boundary, fused over the room's views and truncated at "
+        f"{_length(reach, explanation.unit)}, less the strongest other room's. Its zero line is "
+        "cut into straight pieces, walls are fitted to the raw columns near each, and the rooms "
+        "made one plan.",
+    )
+    colours = _colours(_SIGNED)
+    for axes, room in panels:
+        assert room.floor is not None
+        floor = room.floor
+        views = [view for view in explanation.views if view.room == room.id]
+        rings = [ring for ring in (floor.fitted, room.polygon) if ring is not None]
+        bounds = _bounds([*floor.pieces, *rings], margin=1.2 * reach)
+        sheet = _room_sheet(axes, bounds, explanation.unit, room, _sigma_text(room, explanation))
+        columns = np.concatenate([view.boundary for view in views] or [np.empty((0, 2))])
+        cuts = [piece[0] for piece in floor.pieces]
+        marks: list[Artist] = [
+            _image(axes, floor.distance, colours, -reach, reach),
+            _dots(columns, sheet, WALL_COLOUR, "none", 0.7, alpha=0.35),
+            _ring(np.concatenate(floor.pieces), WALL_COLOUR, 0.8 * sheet.weight),
+            _dots(cuts, sheet, "white", WALL_COLOUR, 3.6),
+        ]
+        if floor.fitted is not None:
+            marks.append(_ring(floor.fitted, FITTED_COLOUR, 1.3 * sheet.weight))
+        if room.polygon is not None:
+            marks.append(_ring(room.polygon, _PLACED_COLOUR, 1.3 * sheet.weight, (0, (3, 2))))
+        _put(axes, sheet, "floor", marks, 1)
+    away = _length(reach, explanation.unit)
+    _legend(
+        figure,
+        [
+            _swatch(f"{away} outside", colours(0.0)),
+            _swatch(f"{away} inside", colours(1.0)),
+            _dot("raw column", WALL_COLOUR, "none", 2.0),
+            _stroke("zero line", WALL_COLOUR),
+            _dot("where it is cut", "white", WALL_COLOUR),
+            _stroke("walls fitted", FITTED_COLOUR),
+            _stroke("in the plan", _PLACED_COLOUR, (0, (3, 2))),
+        ],
+    )
+    return figure
+
+
+_PLACED_COLOUR = "#1D4E89"
+
+
+def _sigma_text(room: ExplainedRoom, explanation: Explanation) -> str:
+    assert room.floor is not None
+    if room.floor.fitted is None:
+        return room.failure or "no shape"
+    told = f"{len(room.floor.fitted)} walls"
+    sigmas = room.floor.sigmas
+    known = np.empty(0) if sigmas is None else sigmas[np.isfinite(sigmas)]
+    if not len(known):
+        return told
+    middle = float(np.median(known))
+    figure = f"{100 * middle:.1f} cm" if explanation.unit == "m" else f"{middle:.3f} camera heights"
+    return f"{told}, fitted to ± {figure}"
+
+
+# What all figures share.
+
+
+def _camera_height(explanation: Explanation) -> float:
+    """Plan units a camera height."""
+    room = next(iter(explanation.rooms), None)
+    return 1.0 if room is None else room.density.cell / explanation.config.rooms.cell_ch
+
+
+def _length(value: float, unit: Unit) -> str:
+    if unit == "m":
+        return f"{100 * value:.0f} cm"
+    return f"{value:.2g} {unit_name(unit, value)}"
+
+
+def _figure(width_in: float, height_in: float) -> Figure:
+    """An empty figure of this size between head and foot."""
     from matplotlib.figure import Figure
 
-    with matplotlib.rc_context({"font.family": FONT}):
-        figure = Figure(figsize=(width, height), facecolor="white", layout="constrained")
-        return figure, figure.add_gridspec(rows, columns)
+    size = (width_in + 2 * _EDGE_IN, height_in + _HEAD_IN + _FOOT_IN)
+    return Figure(figsize=size, facecolor="white")
 
 
-def _panels(
-    rooms: Sequence[ExplainedRoom], title: str
-) -> tuple[Figure, list[tuple[Axes, ExplainedRoom]]]:
-    """A figure with a panel a room."""
-    shown = rooms[:_MOST_PANELS]
-    columns = min(len(shown), max(2, int(np.ceil(np.sqrt(1.4 * len(shown))))))
-    rows = -(-len(shown) // columns)
-    height = _PANEL_IN * rows + _TITLE_IN + _LEGEND_IN
-    figure, grid = _figure(_PANEL_IN * columns, height, rows, columns)
-    more = f" (first {len(shown)} of {len(rooms)} rooms)" if len(shown) < len(rooms) else ""
-    figure.text(0.5, 1 - 0.5 * _TITLE_IN / height, title + more, fontsize=13, ha="center")
-    low, high = _LEGEND_IN / height, 1 - (_TITLE_IN + _LEGEND_IN) / height
-    cast(Any, figure.get_layout_engine()).set(rect=(0, low, 1, high))
-    panels = [
-        (figure.add_subplot(grid[k // columns, k % columns]), room) for k, room in enumerate(shown)
-    ]
-    return figure, panels
+def _axes(figure: Figure, corner: tuple[float, float], size: tuple[float, float]) -> Axes:
+    """Axes by their lower left corner and size in inches, above the foot."""
+    width, height = figure.get_size_inches()
+    left, bottom = corner[0] + _EDGE_IN, corner[1] + _FOOT_IN
+    return figure.add_axes((left / width, bottom / height, size[0] / width, size[1] / height))
 
 
-def _plan_axes(axes: Axes, low: FloatArray, high: FloatArray, title: str) -> None:
-    """Equal scales, a scale bar of one camera height, no frame."""
-    axes.set_aspect("equal")
-    axes.set_xlim(low[0], high[0])
-    axes.set_ylim(low[1], high[1])
-    axes.set_axis_off()
-    axes.set_title(title, fontsize=10)
-    start = low + 0.03 * (high - low)
-    axes.plot([start[0], start[0] + 1], [start[1]] * 2, "-", color=WALL_COLOUR, linewidth=2)
-    axes.annotate(
-        "1 camera height",
-        (start[0], start[1]),
-        xytext=(0, 3),
-        textcoords="offset points",
-        fontsize=7,
-        color=WALL_COLOUR,
+def _note(figure: Figure, left: float, up: float, text: str, size: float, colour: str) -> None:
+    """Text by the place of its upper left corner in inches, above the foot."""
+    width, height = figure.get_size_inches()
+    x, y = (left + _EDGE_IN) / width, (up + _FOOT_IN) / height
+    made = plan_text(x, y, text, size, colour, ha="left", va="top", linespacing=1.3)
+    made.set_transform(figure.transFigure)
+    figure.add_artist(made)
+
+
+def _heading(figure: Figure, title: str, note: str) -> None:
+    from textwrap import fill
+
+    width, height = figure.get_size_inches()
+    top = height - _FOOT_IN - 0.2
+    _note(figure, 0.0, top, title, 14.0, WALL_COLOUR)
+    characters = int((width - 2 * _EDGE_IN) * 72 / (8.5 * 0.53))
+    _note(figure, 0.0, top - 0.32, fill(note, characters), 8.5, QUIET_COLOUR)
+
+
+def _room_page(
+    rooms: Sequence[ExplainedRoom], columns: int, panel: float, title: str, note: str
+) -> tuple[Figure, Iterator[tuple[Axes, ExplainedRoom]]]:
+    """A figure with square axes a room."""
+    columns = min(columns, max(2, len(rooms)))
+    rows = -(-len(rooms) // columns)
+    figure = _figure(columns * panel, rows * panel)
+    _heading(figure, title, note)
+    places = ((k % columns * panel, (rows - 1 - k // columns) * panel) for k in range(len(rooms)))
+    axes = (_axes(figure, place, (panel, panel)) for place in places)
+    return figure, zip(axes, rooms, strict=True)
+
+
+def _room_sheet(axes: Axes, bounds: Bounds, unit: Unit, room: ExplainedRoom, told: str) -> Sheet:
+    return draw_sheet(axes, bounds, unit, title=room.name, told=told, weight=_WEIGHT)
+
+
+def _legend(figure: Figure, handles: Sequence[Artist]) -> None:
+    figure.legend(
+        handles=list(handles),
+        loc="lower center",
+        bbox_to_anchor=(0.5, 0.12 / float(figure.get_size_inches()[1])),
+        ncols=len(handles),
+        frameon=False,
+        handletextpad=0.5,
+        columnspacing=1.4,
+        prop={"family": FONT, "size": 8},
+        labelcolor=WALL_COLOUR,
     )
 
 
-def _extent(parts: Sequence[FloatArray]) -> tuple[FloatArray, FloatArray]:
-    """The box around nearly all points, with a margin."""
-    points = np.concatenate([np.empty((0, 2)), *(part.reshape(-1, 2) for part in parts)])
+def _stroke(label: str, colour: str, style: Any = "solid") -> Artist:
+    from matplotlib.lines import Line2D
+
+    return Line2D([], [], color=colour, linewidth=1.6, linestyle=style, label=label)
+
+
+def _dot(label: str, face: str, edge: str, size: float = 5.0) -> Artist:
+    from matplotlib.lines import Line2D
+
+    return Line2D(
+        [],
+        [],
+        linestyle="none",
+        marker="o",
+        markersize=size,
+        markerfacecolor=face,
+        markeredgecolor=edge,
+        markeredgewidth=0.8,
+        label=label,
+    )
+
+
+def _swatch(label: str, colour: Any) -> Artist:
+    from matplotlib.patches import Patch
+
+    return Patch(facecolor=colour, edgecolor=_CONTEXT_COLOUR, linewidth=0.6, label=label)
+
+
+def _dress(axes: Axes, title: str) -> None:
+    """Quiet axes for a curve."""
+    axes.set_title(title, fontsize=9, fontfamily=FONT, color=WALL_COLOUR, loc="left")
+    axes.tick_params(labelsize=7.5, labelfontfamily=FONT, color=QUIET_COLOUR)
+    axes.grid(color=_FRAME_COLOUR, linewidth=0.6)
+    axes.set_axisbelow(True)
+    for name, spine in axes.spines.items():
+        spine.set_visible(name in ("left", "bottom"))
+        spine.set_color(QUIET_COLOUR)
+
+
+def _colours(names: Sequence[str]) -> Colormap:
+    from matplotlib.colors import LinearSegmentedColormap
+
+    return LinearSegmentedColormap.from_list("panoplan", list(names))
+
+
+def _darker(colour: str) -> Any:
+    from matplotlib.colors import to_rgb
+
+    return tuple(0.55 * share for share in to_rgb(colour))
+
+
+def _fills(rooms: Sequence[ExplainedRoom]) -> dict[str, str]:
+    """The colours that the plan's rooms have."""
+    return room_colours([Room(room.id, room.name, room.polygon, None, ()) for room in rooms])
+
+
+def _room_fills(explanation: Explanation, level: int, fills: Mapping[str, str]) -> list[Artist]:
+    from matplotlib.patches import Polygon
+
+    there = {view.room for view in explanation.views if view.level == level}
+    return [
+        Polygon(room.polygon, facecolor=fills[room.id], edgecolor="none", alpha=0.45)
+        for room in explanation.rooms
+        if room.polygon is not None and room.id in there
+    ]
+
+
+def _bounds(
+    parts: Sequence[FloatArray], *, share: float = 0.002, margin: float | None = None
+) -> Bounds:
+    """The box around nearly all points: a share of them lies beyond it on each side."""
+    points = np.concatenate([np.empty((0, 2)), *parts])
     if len(points) == 0:
         return np.zeros(2), np.ones(2)
-    low, high = np.quantile(points, [0.002, 0.998], axis=0)
-    margin = 0.3 + 0.04 * float((high - low).max())
-    return low - margin, high + margin
+    low, high = np.quantile(points, [share, 1 - share], axis=0)
+    extent = float((high - low).max())
+    grow = margin or max(0.06 * extent, 1e-3 if extent else 0.5)
+    return low - grow, high + grow
 
 
 def _box(raster: Raster) -> FloatArray:
     """Corners of the cells that have something to say."""
-    rows, columns = np.nonzero(np.nan_to_num(raster.values) > 0.05)
-    if len(rows) == 0:
-        return raster.low[None]
-    cells = np.stack([rows, columns], axis=1)
-    ends = np.stack([cells.min(axis=0), cells.max(axis=0) + 1])
-    return np.asarray(raster.low + raster.cell * ends)
+    cells = np.argwhere(raster.values > 0.05).astype(float)
+    if len(cells) == 0:
+        return raster.origin[None]
+    return np.concatenate([raster.at(cells), raster.at(cells + 1.0)])
 
 
-def _within(points: FloatArray, low: FloatArray, high: FloatArray) -> FloatArray:
-    return points[((points >= low) & (points <= high)).all(axis=1)]
+def _put(axes: Axes, sheet: Sheet, name: str, marks: Sequence[Artist], order: float) -> None:
+    """Marks as a layer, cut off at the edge of the sheet, and its frame."""
+    from matplotlib.patches import Rectangle
 
-
-def _draw_cloud(axes: Axes, points: FloatArray, low: FloatArray, high: FloatArray) -> None:
-    cell = float((high - low).max()) / _CLOUD_CELLS
-    edges = [np.arange(low[k], high[k] + cell, cell) for k in (0, 1)]
-    counts, _, _ = np.histogram2d(points[:, 0], points[:, 1], bins=edges)
-    axes.imshow(
-        counts.T,
-        origin="lower",
-        extent=(edges[0][0], edges[0][-1], edges[1][0], edges[1][-1]),
-        cmap="Greys",
-        vmin=0.0,
-        vmax=max(1.0, float(np.quantile(counts[counts > 0], 0.6))) if counts.any() else 1.0,
-        interpolation="nearest",
+    width, height = sheet.high - sheet.low
+    corner = (float(sheet.low[0]), float(sheet.low[1]))
+    frame = Rectangle(
+        corner, width, height, facecolor="none", edgecolor=_FRAME_COLOUR, linewidth=0.8
     )
+    frame.set_transform(axes.transData)
+    add_layer(axes, name, [*marks, frame], order)
+    for mark in marks:
+        mark.set_clip_path(frame)
 
 
-def _image(axes: Axes, raster: Raster, colours: str, least: float, most: float) -> None:
+def _image(axes: Axes, raster: Raster, colours: Colormap, least: float, most: float) -> Artist:
+    from matplotlib.colors import Normalize
+    from matplotlib.image import AxesImage
+    from matplotlib.transforms import Affine2D
+
     n, m = raster.values.shape
-    x, y = raster.low
-    axes.imshow(
-        raster.values.T,
-        origin="lower",
-        extent=(x, x + n * raster.cell, y, y + m * raster.cell),
+    image = AxesImage(
+        axes,
         cmap=colours,
-        vmin=least,
-        vmax=most,
+        norm=Normalize(least, most),
         interpolation="nearest",
+        origin="lower",
+        extent=(0, n, 0, m),
+    )
+    image.set_data(raster.values.T)
+    (a, b), (c, d) = raster.axes
+    cells = Affine2D(np.array([[a, c, raster.origin[0]], [b, d, raster.origin[1]], [0, 0, 1]]))
+    image.set_transform(cells + axes.transData)
+    return image
+
+
+def _level(raster: Raster, level: float) -> list[FloatArray]:
+    """Lines on which a raster has a value."""
+    values = np.pad(raster.values, 1)
+    lines = contour_generator(z=values.T).lines(level)
+    return [raster.at(np.asarray(line) - 0.5) for line in lines]
+
+
+def _lines(lines: Sequence[FloatArray], colour: Any, width: float, alpha: float = 1.0) -> Artist:
+    from matplotlib.collections import LineCollection
+
+    return LineCollection(
+        list(lines), colors=[colour], linewidths=width, alpha=alpha, capstyle="round"
     )
 
 
-def _contour(axes: Axes, raster: Raster, level: float, colour: str) -> None:
-    n, m = raster.values.shape
-    x = raster.low[0] + (np.arange(n) + 0.5) * raster.cell
-    y = raster.low[1] + (np.arange(m) + 0.5) * raster.cell
-    axes.contour(x, y, raster.values.T, levels=[level], colors=[colour], linewidths=0.8)
-
-
-def _ring(axes: Axes, ring: FloatArray, colour: str, width: float) -> None:
-    closed = np.vstack([ring, ring[:1]])
-    axes.plot(*closed.T, "-", color=colour, linewidth=width)
-
-
-def _sigma_text(room: ExplainedRoom) -> str:
-    if room.outline is None:
-        return room.failure or "no shape"
-    known = room.sigmas[np.isfinite(room.sigmas)] if room.sigmas is not None else np.empty(0)
-    told = f", ± {100 * float(np.median(known)):.1f} % of a camera height" if len(known) else ""
-    return f"{len(room.outline)} walls{told}"
-
-
-def _handle(colour: str, label: str) -> Any:
+def _ring(ring: FloatArray, colour: str, width: float, style: Any = "solid") -> Artist:
     from matplotlib.lines import Line2D
 
-    return Line2D([], [], color=colour, linewidth=2, label=label)
+    x, y = np.vstack([ring, ring[:1]]).T
+    return Line2D(x, y, color=colour, linewidth=width, linestyle=style, solid_joinstyle="miter")
+
+
+def _dots(
+    points: FloatArray | Sequence[FloatArray],
+    sheet: Sheet,
+    face: Any,
+    edge: Any,
+    size: float,
+    alpha: float = 1.0,
+) -> Artist:
+    from matplotlib.lines import Line2D
+
+    x, y = np.asarray(points).reshape(-1, 2).T
+    return Line2D(
+        x,
+        y,
+        linestyle="none",
+        marker="o",
+        markersize=size * sheet.weight,
+        markerfacecolor=face,
+        markeredgecolor=edge,
+        markeredgewidth=0.6 * sheet.weight,
+        alpha=alpha,
+    )
+
+
+def _path(views: Sequence[ExplainedView], sheet: Sheet) -> list[Artist]:
+    """The camera path, broken between levels."""
+    runs = [list(run) for _, run in groupby(views, key=lambda view: view.level)]
+    lines = [np.array([view.camera for view in run]) for run in runs]
+    return [_lines(lines, QUIET_COLOUR, 0.7 * sheet.weight, 0.7)]

@@ -67,8 +67,6 @@ def room_shape(
 
     Source: Section III-F.
     """
-    if np.count_nonzero(density >= threshold) * lattice_cell**2 < config.min_area_ch2:
-        return RoomShape(None, "the room's mask is smaller than the smallest room")
     outlines: list[FloatArray] = []
     for made in rounds(density, first_cell, lattice_cell, threshold, walls, orientations, config):
         if made.candidates is None:
@@ -77,6 +75,8 @@ def room_shape(
             reason = f"no closed path in round {len(outlines) + 1}"
             return RoomShape(None, reason, tuple(outlines))
         outlines.append(made.grid.to_walk(made.corners))
+    if not outlines:
+        return RoomShape(None, "the room's mask is smaller than the smallest room")
     outline = counter_clockwise(outlines[-1])
     if not Polygon(outline).is_valid:
         return RoomShape(None, "the path crosses itself", tuple(outlines))
@@ -92,12 +92,15 @@ def rounds(
     orientations: Sequence[Orientation],
     config: ShapeConfig,
 ) -> Iterator[Round]:
-    """The rounds of `room_shape`, which has the same arguments; the last one may have failed.
+    """The rounds of `room_shape`, which has the same arguments.
 
     Yields:
-        Each round as it is done.
+        Each round as it is done; a failed one is the last. None where the mask is too small.
     """
-    centres = (np.argwhere(density >= threshold) + np.asarray(first_cell) + 0.5) * lattice_cell
+    cells = np.argwhere(density >= threshold)
+    if len(cells) * lattice_cell**2 < config.min_area_ch2:
+        return
+    centres = (cells + np.asarray(first_cell) + 0.5) * lattice_cell
     direction = orientations[0].direction if orientations else 0.0
     core_ch: FloatArray | None = None
     earlier: FloatArray | None = None
