@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from contourpy import contour_generator
 
+from panoplan.errors import InputError
 from panoplan.exporters.drawing import (
     CORNER_COLOUR,
     FONT,
@@ -37,7 +38,7 @@ from panoplan.types.explain import (
     Grouping,
     Raster,
 )
-from panoplan.types.plan import Room, ScaleEstimate, Unit
+from panoplan.types.plan import Room, Unit
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -57,8 +58,10 @@ ROUND_COLOURS = ("#B08900", "#2B8A3E", "#C2255C")
 FITTED_COLOUR = CORNER_COLOUR
 _CONTEXT_COLOUR = "#C3C9D0"
 _FRAME_COLOUR = "#DDE1E6"
-_INK = ("#FFFFFF", "#D5E3F0", "#7FAAD4", "#1D4E89", "#0B2545")
-_SIGNED = ("#C4622D", "#F0C5A3", "#FFFFFF", "#B5D2EA", "#5E9BCB")
+_INK = ("#FFFFFF", "#C9DDEF", "#7FAAD4", "#1D4E89", "#0B2545")
+_BELOW = ("#FFFFFF", "#E6E9ED", "#CDD3DA")
+_ABOVE = ("#D3E5F3", "#A6CBE7", "#6FA8D6")
+_SIGNED = ("#E0935F", "#F6DCC6", "#FFFFFF", "#CFE2F1", "#8FBBDF")
 
 _DOTS_PER_INCH = 160
 _HEAD_IN, _FOOT_IN = 0.95, 0.55
@@ -91,8 +94,8 @@ def write_explanation(
     Raises:
         InputError: the place cannot be written.
     """
-    make_folder(folder)
     forget_explanation(folder)
+    make_folder(folder)
     drawn = _pictures(explanation)
     written = []
     for done, (name, draw) in enumerate(drawn):
@@ -105,39 +108,57 @@ def write_explanation(
 
 
 def forget_explanation(folder: Path) -> None:
-    """Removes the pictures of an earlier explanation, and the folder if nothing else is in it."""
+    """Removes the pictures of an earlier explanation, and the folder if nothing else is in it.
+
+    Raises:
+        InputError: they cannot be removed.
+    """
     if not folder.is_dir():
         return
-    for path in folder.iterdir():
-        if _OURS.fullmatch(path.name):
+    try:
+        names = list(folder.iterdir())
+        ours = [path for path in names if _OURS.fullmatch(path.name)]
+        for path in ours:
             path.unlink()
+        if ours == names:
+            folder.rmdir()
+    except OSError as error:
+        raise InputError(
+            folder, f"{error.strerror or error}", "a folder that can be written"
+        ) from None
 
 
 def _pictures(explanation: Explanation) -> list[tuple[str, Callable[[], Figure]]]:
     """Names and how to draw them, so that only one figure is held at a time."""
+    rooms, groupings = explanation.rooms, explanation.groupings
     found: list[tuple[str, Callable[[], Figure]]] = [
-        ("1_scale.png", lambda: scale_figure(explanation))
+        ("1_scale.png", partial(scale_figure, explanation)),
+        *_paged("2_rooms", 20, partial(rooms_figure, explanation), rooms),
     ]
-    rooms = explanation.rooms
-
-    def paged(stem: str, per_page: int, draw: Any, shown: Sequence[ExplainedRoom]) -> None:
-        pages = [shown[k : k + per_page] for k in range(0, len(shown), per_page)]
-        for number, page in enumerate(pages, 1):
-            name = f"{stem}_{number}.png" if len(pages) > 1 else f"{stem}.png"
-            found.append((name, lambda page=page: draw(explanation, page)))
-
-    paged("2_rooms", 20, rooms_figure, rooms)
-    for grouping in explanation.groupings:
-        several = len(explanation.groupings) > 1
-        name = f"3_views_level_{grouping.level}.png" if several else "3_views.png"
-        found.append((name, lambda grouping=grouping: views_figure(explanation, grouping)))
-    paged("3_walls", 12, walls_figure, [room for room in rooms if room.walls])
-    paged("4_floors", 12, floors_figure, [room for room in rooms if room.floor])
-    for room in rooms:
-        if room.walls and room.walls.rounds:
-            name = f"4_rounds_{room.id}.png"
-            found.append((name, lambda room=room: rounds_figure(explanation, room)))
+    for grouping in groupings:
+        level = f"_level_{grouping.level}" if len(groupings) > 1 else ""
+        found.append((f"3_views{level}.png", partial(views_figure, explanation, grouping)))
+    by_ispa = [room for room in rooms if room.walls]
+    found += _paged("3_walls", 12, partial(walls_figure, explanation), by_ispa)
+    fused = [room for room in rooms if room.floor]
+    found += _paged("4_floors", 12, partial(floors_figure, explanation), fused)
+    found += [
+        (f"4_rounds_{room.id}.png", partial(rounds_figure, explanation, room))
+        for room in by_ispa
+        if room.walls and room.walls.rounds
+    ]
     return found
+
+
+def _paged(
+    stem: str,
+    per_page: int,
+    draw: Callable[[Sequence[ExplainedRoom]], Figure],
+    rooms: Sequence[ExplainedRoom],
+) -> list[tuple[str, Callable[[], Figure]]]:
+    pages = [rooms[k : k + per_page] for k in range(0, len(rooms), per_page)]
+    names = [f"{stem}_{k + 1}.png" if len(pages) > 1 else f"{stem}.png" for k in range(len(pages))]
+    return [(name, partial(draw, page)) for name, page in zip(names, pages, strict=True)]
 
 
 # Scale.
@@ -150,7 +171,7 @@ def scale_figure(explanation: Explanation) -> Figure:
     cell = explanation.config.scale.cells_ch[0] * _camera_height(explanation)
     bounds = _bounds([cloud.points for cloud in clouds])
     columns = max(len(clouds), 3)
-    panel = 3.4 if columns > 3 else 4.4
+    panel = 4.2
     width, height = bounds[1] - bounds[0]
     tall = panel * float(np.clip(height / width, 0.35, 1.3)) + 0.55
     curve_in = 3.6
@@ -163,12 +184,11 @@ def scale_figure(explanation: Explanation) -> Figure:
         "objective that the search minimises (Eq. 3-4).",
     )
     counts = [_counted(cloud.points, bounds, cell) for cloud in clouds]
-    filled = [raster.values[raster.values > 0] for raster in counts]
-    most = max((float(np.quantile(some, 0.97)) for some in filled if len(some)), default=1.0)
+    most = max((float(raster.values.max()) for raster in counts), default=1.0)
     for k, (cloud, raster) in enumerate(zip(clouds, counts, strict=True)):
         axes = _axes(figure, (k * panel, curve_in), (panel, tall))
         sheet = draw_sheet(axes, bounds, unit, title=_cloud_title(cloud, scale), weight=_WEIGHT)
-        image = _image(axes, raster, _colours(_INK), 0.0, max(most, 1.0))
+        image = _image(axes, raster, _colours(_INK), 0.0, 0.8 * most)
         _put(axes, sheet, "cloud", [image], 1)
     _draw_objective(figure, explanation, curve_in, columns * panel)
     return figure
@@ -182,17 +202,22 @@ def _cloud_title(cloud: Cloud, scale: ExplainedScale) -> str:
     if cloud.adjusted:
         return f"cameras adjusted, {told}"
     percent = 100 * (cloud.ch_per_su / used - 1)
-    return f"{told}, the one used" if abs(percent) < 1e-6 else f"{told}  ({percent:+.0f} %)"
+    return f"{told}, the one used" if abs(percent) < 1e-6 else f"{told} ({_percent(percent, 0)})"
+
+
+def _percent(value: float, digits: int) -> str:
+    return f"{value:+.{digits}f} %".replace("-", "−")
 
 
 def _counted(points: FloatArray, bounds: Bounds, cell: float) -> Raster:
+    """Logarithm of the points in each cell, so that far walls are seen, too."""
     low, high = bounds
     size = np.ceil((high - low) / cell).astype(int)
     at = np.floor((points - low) / cell).astype(int)
     at = at[((at >= 0) & (at < size)).all(axis=1)]
     counts = np.zeros(tuple(size))
     np.add.at(counts, tuple(at.T), 1.0)
-    return Raster(low, cell * np.eye(2), counts)
+    return Raster(low, cell * np.eye(2), np.log1p(counts))
 
 
 def _draw_objective(figure: Figure, explanation: Explanation, high: float, wide: float) -> None:
@@ -237,9 +262,10 @@ def _draw_objective(figure: Figure, explanation: Explanation, high: float, wide:
             objective[shown].min() - 0.08 * spread, objective[shown].max() + 0.08 * spread
         )
         _dress(axes, "whole range searched" if k == 0 else "near the bottom")
-        axes.set_xlabel("s: camera heights a trajectory unit", fontsize=8, fontfamily=FONT)
+        text = {"fontsize": 8, "fontfamily": FONT, "color": WALL_COLOUR}
+        axes.set_xlabel("s: camera heights a trajectory unit", **text)
         if k == 0:
-            axes.set_ylabel(f"{label} (nats)", fontsize=8, fontfamily=FONT)
+            axes.set_ylabel(f"{label} (nats)", **text)
 
 
 def _draw_scales(axes: Axes, scale: ExplainedScale) -> None:
@@ -272,7 +298,7 @@ def _facts(scale: ExplainedScale) -> list[tuple[str, str]]:
         facts += [
             (f"sigma {sigma}", WALL_COLOUR),
             (f"from {used.keyframes_used} keyframes", WALL_COLOUR),
-            ("settled" if used.converged else "had not settled", WALL_COLOUR),
+            ("settled" if used.converged else "not settled when it was frozen", WALL_COLOUR),
         ]
         if used.at_edge:
             facts.append(
@@ -282,14 +308,19 @@ def _facts(scale: ExplainedScale) -> list[tuple[str, str]]:
         facts.append(("given: unit and camera height known", WALL_COLOUR))
     if searched is not None and searched is not used and searched.ch_per_su is not None:
         apart = 100 * (searched.ch_per_su / used.ch_per_su - 1)
-        facts.append((f"layouts alone say {searched.ch_per_su:.5g} ({apart:+.2g} %)", PATH_COLOUR))
+        facts.append(
+            (f"layouts alone say {searched.ch_per_su:.5g} ({_percent(apart, 2)})", PATH_COLOUR)
+        )
     if searched is not None and searched.search_range is not None:
         low, high = searched.search_range
         facts.append((f"range searched {low:.3g} to {high:.3g}", WALL_COLOUR))
     if scale.adjusted_ch_per_su is not None:
         apart = 100 * (scale.adjusted_ch_per_su / used.ch_per_su - 1)
         facts.append(
-            (f"cameras adjusted: {scale.adjusted_ch_per_su:.5g} ({apart:+.2g} %)", _ADJUSTED_COLOUR)
+            (
+                f"cameras adjusted: {scale.adjusted_ch_per_su:.5g} ({_percent(apart, 2)})",
+                _ADJUSTED_COLOUR,
+            )
         )
     return facts
 
@@ -300,15 +331,18 @@ def _facts(scale: ExplainedScale) -> list[tuple[str, str]]:
 def rooms_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Figure:
     """The density of each room with its cameras and the camera path."""
     threshold = explanation.config.rooms.threshold
+    meaning = "how many views see a cell as free floor, over the most"
+    if explanation.config.rooms.normalise == "coverage":
+        meaning = "the share of the evidence that says a cell is free floor"
     figure, panels = _room_page(
         rooms,
         4,
         3.3,
         "Rooms and the camera path",
-        "Density of each room: the share of the evidence that says a cell is free floor of this "
-        f"room. Cells from {threshold:g} on are its mask.",
+        f"Density of each room: {meaning}. Cells from {threshold:g} on, in blue, are its mask.",
     )
-    colours = _colours(_INK)
+    below, above = _colours(_BELOW), _colours(_ABOVE)
+    colours = _joined(below, above, threshold)
     for axes, room in panels:
         views = [view for view in explanation.views if view.room == room.id]
         bounds = _bounds([_box(room.density), *(view.camera[None] for view in views)])
@@ -317,8 +351,8 @@ def rooms_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Fi
         own = [view.camera for view in views]
         other = [view.camera for view in explanation.views if view.room != room.id]
         marks: list[Artist] = [
-            _image(axes, room.density, colours, 0.0, 1.3),
-            _lines(_level(room.density, threshold), WALL_COLOUR, 0.9 * sheet.weight),
+            _image(axes, room.density, colours, 0.0, 1.0),
+            *([] if room.polygon is None else [_ring(room.polygon, WALL_COLOUR, sheet.weight)]),
             *_path(explanation.views, sheet),
             _dots(other, sheet, "white", QUIET_COLOUR, 2.6),
             _dots(own, sheet, CORNER_COLOUR, "white", 4.6),
@@ -327,10 +361,11 @@ def rooms_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Fi
     _legend(
         figure,
         [
-            _swatch("density 0", colours(0.0)),
-            _swatch("½", colours(0.5 / 1.3)),
-            _swatch("1", colours(1 / 1.3)),
-            _stroke("mask", WALL_COLOUR),
+            _swatch("density 0", below(0.0)),
+            _swatch(f"below {threshold:g}", below(1.0)),
+            _swatch(f"{threshold:g}: mask", above(0.0)),
+            _swatch("1", above(1.0)),
+            _stroke("outline in the plan", WALL_COLOUR),
             _stroke("camera path", QUIET_COLOUR),
             _dot("keyframe of the room", CORNER_COLOUR, "white"),
             _dot("of another room", "white", QUIET_COLOUR),
@@ -368,11 +403,11 @@ def views_figure(explanation: Explanation, grouping: Grouping) -> Figure:
     _put(axes, sheet, "rooms", _room_fills(explanation, grouping.level, fills), 1)
     marks: list[Artist] = []
     for view in views:
-        ink = _darker(fills.get(view.room, _CONTEXT_COLOUR))
+        ink = _stronger(fills.get(view.room, _CONTEXT_COLOUR))
         marks.append(_lines([view.boundary], ink, 0.8 * sheet.weight, 0.75))
     marks += _path([view for view in explanation.views if view.level == grouping.level], sheet)
     for view in views:
-        ink = _darker(fills.get(view.room, _CONTEXT_COLOUR))
+        ink = _stronger(fills.get(view.room, _CONTEXT_COLOUR))
         face, edge = ("white", ink) if view.doorway else (ink, "white")
         marks.append(_dots([view.camera], sheet, face, edge, 5.0))
     _put(axes, sheet, "views", marks, 2)
@@ -466,7 +501,7 @@ def walls_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Fi
         for reason, colour in REASON_COLOURS.items():
             pieces = [points for why, points in rejected if why == reason]
             if pieces:
-                marks.append(_dots(np.concatenate(pieces), sheet, colour, "none", 2.2))
+                marks.append(_dots(np.concatenate(pieces), sheet, colour, "none", 3.2))
         marks.append(_dots([view.camera for view in views], sheet, CORNER_COLOUR, "white", 4.6))
         _put(axes, sheet, "walls", marks, 1)
     counts = {
@@ -601,9 +636,9 @@ def floors_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> F
             _dots(cuts, sheet, "white", WALL_COLOUR, 3.6),
         ]
         if floor.fitted is not None:
-            marks.append(_ring(floor.fitted, FITTED_COLOUR, 1.3 * sheet.weight))
+            marks.append(_ring(floor.fitted, FITTED_COLOUR, 1.5 * sheet.weight))
         if room.polygon is not None:
-            marks.append(_ring(room.polygon, _PLACED_COLOUR, 1.3 * sheet.weight, (0, (3, 2))))
+            marks.append(_ring(room.polygon, _PLACED_COLOUR, 1.5 * sheet.weight, (0, (3, 3))))
         _put(axes, sheet, "floor", marks, 1)
     away = _length(reach, explanation.unit)
     _legend(
@@ -749,7 +784,9 @@ def _swatch(label: str, colour: Any) -> Artist:
 def _dress(axes: Axes, title: str) -> None:
     """Quiet axes for a curve."""
     axes.set_title(title, fontsize=9, fontfamily=FONT, color=WALL_COLOUR, loc="left")
-    axes.tick_params(labelsize=7.5, labelfontfamily=FONT, color=QUIET_COLOUR)
+    axes.tick_params(
+        labelsize=7.5, labelfontfamily=FONT, labelcolor=WALL_COLOUR, color=QUIET_COLOUR
+    )
     axes.grid(color=_FRAME_COLOUR, linewidth=0.6)
     axes.set_axisbelow(True)
     for name, spine in axes.spines.items():
@@ -763,10 +800,21 @@ def _colours(names: Sequence[str]) -> Colormap:
     return LinearSegmentedColormap.from_list("panoplan", list(names))
 
 
-def _darker(colour: str) -> Any:
-    from matplotlib.colors import to_rgb
+def _joined(below: Colormap, above: Colormap, at: float) -> Colormap:
+    """Two colour maps over 0-1 with a step between them."""
+    from matplotlib.colors import ListedColormap
 
-    return tuple(0.55 * share for share in to_rgb(colour))
+    shares = (np.arange(256) + 0.5) / 256
+    low, high = below(shares / max(at, 1e-9)), above((shares - at) / max(1 - at, 1e-9))
+    return ListedColormap(np.where((shares < at)[:, None], low, high))
+
+
+def _stronger(colour: str) -> Any:
+    """The same hue as a fill, for lines."""
+    from matplotlib.colors import hsv_to_rgb, rgb_to_hsv, to_rgb
+
+    hue, saturation, _ = rgb_to_hsv(to_rgb(colour))
+    return tuple(hsv_to_rgb((hue, min(1.0, 0.25 + 2.0 * saturation), 0.62)).tolist())
 
 
 def _fills(rooms: Sequence[ExplainedRoom]) -> dict[str, str]:
@@ -840,13 +888,6 @@ def _image(axes: Axes, raster: Raster, colours: Colormap, least: float, most: fl
     cells = Affine2D(np.array([[a, c, raster.origin[0]], [b, d, raster.origin[1]], [0, 0, 1]]))
     image.set_transform(cells + axes.transData)
     return image
-
-
-def _level(raster: Raster, level: float) -> list[FloatArray]:
-    """Lines on which a raster has a value."""
-    values = np.pad(raster.values, 1)
-    lines = contour_generator(z=values.T).lines(level)
-    return [raster.at(np.asarray(line) - 0.5) for line in lines]
 
 
 def _lines(lines: Sequence[FloatArray], colour: Any, width: float, alpha: float = 1.0) -> Artist:
