@@ -172,8 +172,7 @@ def scale_figure(explanation: Explanation) -> Figure:
     bounds = _bounds([cloud.points for cloud in clouds])
     columns = max(len(clouds), 3)
     panel = 4.2
-    width, height = bounds[1] - bounds[0]
-    tall = panel * float(np.clip(height / width, 0.35, 1.3)) + 0.55
+    tall = _panel_height(bounds, panel)
     curve_in = 3.6
     figure = _figure(columns * panel, tall + curve_in)
     _heading(
@@ -239,6 +238,7 @@ def _draw_objective(figure: Figure, explanation: Explanation, high: float, wide:
     label += " less that of the control" if settings.control else ""
     centre = searched.ch_per_su or used.ch_per_su or float(s[np.argmin(objective)])
     marks = [m for m in (used.ch_per_su, searched.ch_per_su, scale.adjusted_ch_per_su) if m]
+    marks.append(float(s[np.argmin(objective)]))
     reach = max(0.12 * centre, *(1.5 * abs(mark - centre) for mark in marks))
     near = np.abs(s - centre) <= reach
     ranges = (
@@ -261,11 +261,11 @@ def _draw_objective(figure: Figure, explanation: Explanation, high: float, wide:
         axes.set_ylim(
             objective[shown].min() - 0.08 * spread, objective[shown].max() + 0.08 * spread
         )
-        _dress(axes, "whole range searched" if k == 0 else "near the bottom")
-        text = {"fontsize": 8, "fontfamily": FONT, "color": WALL_COLOUR}
-        axes.set_xlabel("s: camera heights a trajectory unit", **text)
+        _dress(axes, "whole range searched" if k == 0 else "near the one used")
+        style: dict[str, Any] = {"fontsize": 8, "fontfamily": FONT, "color": WALL_COLOUR}
+        axes.set_xlabel("s: camera heights a trajectory unit", **style)
         if k == 0:
-            axes.set_ylabel(f"{label} (nats)", **text)
+            axes.set_ylabel(f"{label} (nats)", **style)
 
 
 def _draw_scales(axes: Axes, scale: ExplainedScale) -> None:
@@ -461,6 +461,17 @@ def _draw_overlaps(
         if (stop - start) * side * 72 / count > 7.5:
             ticks.append(((start + stop) / 2, names[room]))
         start = stop
+    doors = [k + 0.5 for k, view in enumerate(grouping.views) if explanation.views[view].doorway]
+    size = float(np.clip(0.5 * side * 72 / count, 1.5, 5.0))
+    axes.plot(
+        doors,
+        doors,
+        linestyle="none",
+        marker="o",
+        markersize=size,
+        markerfacecolor="white",
+        markeredgecolor=QUIET_COLOUR,
+    )
     axes.set_xlim(0, count)
     axes.set_ylim(count, 0)
     axes.set_xticks([])
@@ -494,14 +505,13 @@ def walls_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Fi
         bounds = _bounds([_box(room.density), *kept], share=0.01)
         count = f"{len(kept)} kept, {len(rejected)} rejected"
         sheet = _room_sheet(axes, bounds, explanation.unit, room, count)
-        marks: list[Artist] = [
-            _lines([view.boundary for view in views], _CONTEXT_COLOUR, 0.6 * sheet.weight),
-            _lines(kept, PATH_COLOUR, 1.3 * sheet.weight, 0.8),
-        ]
+        boundaries = [view.boundary for view in views]
+        marks: list[Artist] = [_lines(boundaries, _CONTEXT_COLOUR, 0.6 * sheet.weight)]
         for reason, colour in REASON_COLOURS.items():
             pieces = [points for why, points in rejected if why == reason]
             if pieces:
-                marks.append(_dots(np.concatenate(pieces), sheet, colour, "none", 3.2))
+                marks.append(_dots(np.concatenate(pieces), sheet, colour, "none", 2.4, alpha=0.6))
+        marks.append(_lines(kept, PATH_COLOUR, 1.3 * sheet.weight, 0.8))
         marks.append(_dots([view.camera for view in views], sheet, CORNER_COLOUR, "white", 4.6))
         _put(axes, sheet, "walls", marks, 1)
     counts = {
@@ -528,8 +538,10 @@ def rounds_figure(explanation: Explanation, room: ExplainedRoom) -> Figure:
     """Grid, mask, wall density, candidates and shortest path of each round."""
     assert room.walls is not None
     rounds = room.walls.rounds
+    bounds = _bounds([rounds[0].candidates, *(r.corners for r in rounds if r.corners is not None)])
     panel = 4.5
-    figure = _figure(panel * len(rounds), panel)
+    tall = _panel_height(bounds, panel)
+    figure = _figure(panel * len(rounds), tall)
     _heading(
         figure,
         f"{room.name}: iterative shortest path",
@@ -537,10 +549,9 @@ def rounds_figure(explanation: Explanation, room: ExplainedRoom) -> Figure:
         "directions, around the mask, with few corners (Eq. 8-11)."
         + (f" No shape: {room.failure}." if room.failure else ""),
     )
-    bounds = _bounds([rounds[0].candidates, *(r.corners for r in rounds if r.corners is not None)])
     colours = _colours(("#FFFFFF", "#C9D1DA", "#5B636E", "#2B3038"))
     for number, made in enumerate(rounds):
-        axes = _axes(figure, (number * panel, 0.0), (panel, panel))
+        axes = _axes(figure, (number * panel, 0.0), (panel, tall))
         sheet = draw_sheet(
             axes,
             bounds,
@@ -710,6 +721,12 @@ def _note(figure: Figure, left: float, up: float, text: str, size: float, colour
     made = plan_text(x, y, text, size, colour, ha="left", va="top", linespacing=1.3)
     made.set_transform(figure.transFigure)
     figure.add_artist(made)
+
+
+def _panel_height(bounds: Bounds, width_in: float) -> float:
+    """Height of axes of this width that hold bounds with title and scale bar, in inches."""
+    width, height = bounds[1] - bounds[0]
+    return width_in * float(np.clip(height / width, 0.25, 1.3)) + 0.55
 
 
 def _heading(figure: Figure, title: str, note: str) -> None:
