@@ -10,7 +10,7 @@ from panoplan.datasets.scene import Scene
 from panoplan.estimator.explain import explain
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
-from panoplan.exporters.explain import FOLDER, forget_explanation, write_explanation
+from panoplan.exporters.explain.pictures import FOLDER, forget_explanation, write_explanation
 from panoplan.exporters.pictures import write_plan_pictures
 from panoplan.formats.run_folder import RunFolder
 from panoplan.types.plan import FloorPlan, Skipped

@@ -10,7 +10,7 @@ from tests.scenes import RECTANGLE, walk
 from panoplan.config import Config, override
 from panoplan.estimator.explain import SCALE_FACTORS, explain
 from panoplan.estimator.front import FloorPlanEstimator
-from panoplan.exporters.explain import write_explanation
+from panoplan.exporters.explain.pictures import write_explanation
 
 SPOTS = np.array([[-1.2, 0.3], [0.4, -0.8], [1.3, 0.7], [-0.5, 0.9], [0.9, -0.2], [0.1, 0.1]])
 NEXT = np.array([4.1, 0.0])
