@@ -17,6 +17,7 @@ from panoplan.exporters.drawing import (
     unit_name,
 )
 from panoplan.exporters.explain.marks import CONTEXT_COLOUR, FRAME_COLOUR, Bounds
+from panoplan.exporters.labels import width_em
 from panoplan.types.explain import ExplainedRoom, Explanation
 from panoplan.types.plan import Unit
 
@@ -30,6 +31,9 @@ WEIGHT = 0.85
 
 _HEAD_IN, _FOOT_IN = 0.95, 0.55
 _EDGE_IN = 0.35
+_LEAST_IN = 8.5
+"""A narrower page has no room for note and legend."""
+_LEGEND_PT = 8.0
 
 
 def camera_height(explanation: Explanation) -> float:
@@ -49,8 +53,13 @@ def blank_page(width_in: float, height_in: float) -> Figure:
     """An empty figure of this size between head and foot."""
     from matplotlib.figure import Figure
 
-    size = (width_in + 2 * _EDGE_IN, height_in + _HEAD_IN + _FOOT_IN)
+    size = (max(width_in, _LEAST_IN) + 2 * _EDGE_IN, height_in + _HEAD_IN + _FOOT_IN)
     return Figure(figsize=size, facecolor="white")
+
+
+def centred(figure: Figure, width_in: float) -> float:
+    """Where something of this width begins that stands in the middle of the figure, in inches."""
+    return (float(figure.get_size_inches()[0]) - width_in) / 2 - _EDGE_IN
 
 
 def axes_at(figure: Figure, corner: tuple[float, float], size: tuple[float, float]) -> Axes:
@@ -90,11 +99,14 @@ def room_page(
     rooms: Sequence[ExplainedRoom], columns: int, panel: float, title: str, note: str
 ) -> tuple[Figure, Iterator[tuple[Axes, ExplainedRoom]]]:
     """A figure with square axes a room."""
-    columns = min(columns, max(2, len(rooms)))
+    columns = min(columns, max(1, len(rooms)))
     rows = -(-len(rooms) // columns)
     figure = blank_page(columns * panel, rows * panel)
     heading(figure, title, note)
-    places = ((k % columns * panel, (rows - 1 - k // columns) * panel) for k in range(len(rooms)))
+    left = centred(figure, columns * panel)
+    places = (
+        (left + k % columns * panel, (rows - 1 - k // columns) * panel) for k in range(len(rooms))
+    )
     axes = (axes_at(figure, place, (panel, panel)) for place in places)
     return figure, zip(axes, rooms, strict=True)
 
@@ -105,16 +117,20 @@ def room_sheet(axes: Axes, bounds: Bounds, unit: Unit, room: ExplainedRoom, told
 
 
 def legend(figure: Figure, handles: Sequence[Artist]) -> None:
-    """The legend, in one row at the foot of a figure."""
+    """The legend at the foot of a figure, in one row or two."""
+    labels = [str(handle.get_label()) for handle in handles]
+    # A handle with its gaps is as wide as four letters M.
+    needed = sum(width_em(label) + 4.0 for label in labels) * _LEGEND_PT / 72
+    rows = 1 if needed < figure.get_size_inches()[0] else 2
     figure.legend(
         handles=list(handles),
         loc="lower center",
         bbox_to_anchor=(0.5, 0.12 / float(figure.get_size_inches()[1])),
-        ncols=len(handles),
+        ncols=-(-len(handles) // rows),
         frameon=False,
         handletextpad=0.5,
         columnspacing=1.4,
-        prop={"family": FONT, "size": 8},
+        prop={"family": FONT, "size": _LEGEND_PT},
         labelcolor=WALL_COLOUR,
     )
 

@@ -25,6 +25,7 @@ from panoplan.exporters.explain.page import (
     axes_at,
     blank_page,
     camera_height,
+    centred,
     dot,
     heading,
     legend,
@@ -120,8 +121,9 @@ def rounds_figure(explanation: Explanation, room: ExplainedRoom) -> Figure:
         + (f" No shape: {room.failure}." if room.failure else ""),
     )
     colours = colour_map(("#FFFFFF", "#C9D1DA", "#5B636E", "#2B3038"))
+    left = centred(figure, panel * len(rounds))
     for number, made in enumerate(rounds):
-        axes = axes_at(figure, (number * panel, 0.0), (panel, tall))
+        axes = axes_at(figure, (left + number * panel, 0.0), (panel, tall))
         sheet = draw_sheet(
             axes,
             bounds,
