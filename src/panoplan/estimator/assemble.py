@@ -55,7 +55,7 @@ def plan_frame(state: State) -> PlanFrame:
     Args:
         state: what is known.
     """
-    ch_per_su = (None if state.scale is None else state.scale.ch_per_su) or 0.0
+    ch_per_su = state.ch_per_su
     # Metres a unit of length of the method: the first camera's height.
     length = 1.0
     unit: Unit = "ch"
@@ -85,7 +85,7 @@ def assemble(state: State, config: Config) -> FloorPlan:
     scale = state.scale or ScaleEstimate(
         None, "unknown", converged=False, keyframes_used=len(state.waiting)
     )
-    ch_per_su = scale.ch_per_su or 0.0
+    ch_per_su = state.ch_per_su
     if state.stretch != 1.0 and scale.ch_per_su is not None:
         scale = replace(scale, ch_per_su=state.stretch * scale.ch_per_su)
     frame = plan_frame(state)
@@ -94,11 +94,7 @@ def assemble(state: State, config: Config) -> FloorPlan:
     for camera in state.cameras:
         if camera.room is not None:
             members[camera.room].append(camera)
-    composed = {
-        number: shape
-        for level in state.compositions or ()
-        for number, shape in zip(level.numbers, level.shapes, strict=True)
-    }
+    composed = state.composed
     rooms: dict[int, Room] = {}
     walls = 0
     for room in state.rooms:

@@ -11,8 +11,9 @@ import numpy as np
 from panoplan.config import Config
 from panoplan.estimator.assemble import PlanFrame, plan_frame
 from panoplan.estimator.state import RoomState, State, room_id
+from panoplan.estimator.step import evidence_of, walls_seen
 from panoplan.geometry.polar import mutual_overlaps
-from panoplan.stages import orientation, planes, rooms
+from panoplan.stages import rooms
 from panoplan.stages.plan.floorplan import PlannedRoom, plan_rooms
 from panoplan.stages.plan.grouping import doorways
 from panoplan.stages.plan.outline import cut
@@ -57,7 +58,7 @@ def explain(state: State, keyframes: Sequence[Keyframe], config: Config) -> Expl
     """
     frame = plan_frame(state)
     layouts = _layouts(state, keyframes, config)
-    odometry = {k: register(layout, _ch_per_su(state)) for k, layout in layouts.items()}
+    odometry = {k: register(layout, state.ch_per_su) for k, layout in layouts.items()}
     views = {k: state.cameras[k].correction.apply(view) for k, view in odometry.items()}
     explain_room = _fused_rooms if config.shape.method == "fusion" else _ispa_rooms
     told = [_view(state, view, frame) for view in views.values()]
@@ -76,10 +77,6 @@ def explain(state: State, keyframes: Sequence[Keyframe], config: Config) -> Expl
         rooms=explain_room(state, views, frame, config),
         groupings=tuple(groupings),
     )
-
-
-def _ch_per_su(state: State) -> float:
-    return (None if state.scale is None else state.scale.ch_per_su) or 0.0
 
 
 def _layouts(state: State, keyframes: Sequence[Keyframe], config: Config) -> Layouts:
@@ -116,7 +113,7 @@ def _scale(
     levels = {k: level[state.cameras[k].room or 0] for k in layouts}
     shown = Counter(levels.values()).most_common(1)[0][0]
     there = [k for k in layouts if levels[k] == shown]
-    used = _ch_per_su(state)
+    used = state.ch_per_su
     clouds = [
         Cloud(s, _points([register(layouts[k], s) for k in there], frame))
         for s in ([factor * used for factor in SCALE_FACTORS] if used else [0.0])
@@ -188,28 +185,19 @@ def _ispa_rooms(
         assert room.shape is not None
         rejected = []
         for view in (v for k, v in views.items() if state.cameras[k].room == room.number):
-            rng = np.random.default_rng([config.seed, view.index])
             width = len(view.boundary)
-            for piece in planes.wall_pieces(view, config.planes, rng)[1]:
+            for piece in walls_seen(view, config)[1]:
                 first, last = piece.columns
                 columns = (first + np.arange((last - first) % width + 1)) % width
                 points = view.boundary[columns]
                 known = np.isfinite(points[:, 0])
                 rejected.append((piece.reason, frame.to_plan(points[known])))
-        directions, _ = orientation.accepted(room.orientations, config.orientation)
-        made = rounds(
-            rooms.density(room.density, config.rooms),
-            room.density.first_cell,
-            config.rooms.cell_ch,
-            config.rooms.threshold,
-            room.walls,
-            directions,
-            config.shape,
-        )
         walls = ExplainedWalls(
             kept=tuple(frame.to_plan(wall.ends) for wall in room.walls),
             rejected=tuple(rejected),
-            rounds=tuple(_round(item, frame) for item in made),
+            rounds=tuple(
+                _round(made, frame) for made in rounds(evidence_of(room, config), config.shape)
+            ),
         )
         out.append(replace(_room(room, room.shape, frame, config), walls=walls))
     return tuple(out)
@@ -227,11 +215,7 @@ def _round(made: Round, frame: PlanFrame) -> ExplainedRound:
 def _fused_rooms(
     state: State, views: Views, frame: PlanFrame, config: Config
 ) -> tuple[ExplainedRoom, ...]:
-    composed = {
-        number: shape
-        for composition in state.compositions or ()
-        for number, shape in zip(composition.numbers, composition.shapes, strict=True)
-    }
+    composed = state.composed
     planned: dict[int, PlannedRoom] = {}
     for level in range(len(state.levels)):
         planned |= _planned([room for room in state.rooms if room.level == level], views, config)

@@ -167,7 +167,7 @@ def draw_plan(
 
     layers: list[tuple[str, list[Artist]]] = [
         ("rooms", _fills(plan, fills)),
-        ("walls", _outlines(plan, sheet)),
+        ("walls", room_outlines(plan, sheet, WALL_COLOUR, 1.9)),
         ("openings", _segments(plan, sheet)),
     ]
     if shown.path:
@@ -384,15 +384,16 @@ def _fills(plan: FloorPlan, colours: Mapping[str, str]) -> list[Artist]:
     ]
 
 
-def _outlines(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
+def room_outlines(plan: FloorPlan, sheet: Sheet, colour: str, width: float) -> list[Artist]:
+    """The outlines of the rooms, `width` points wide on a sheet of weight 1."""
     from matplotlib.patches import PathPatch
 
     return [
         PathPatch(
             outline_path(area),
             facecolor="none",
-            edgecolor=WALL_COLOUR,
-            linewidth=1.9 * sheet.weight,
+            edgecolor=colour,
+            linewidth=width * sheet.weight,
             joinstyle="miter",
             gid=f"outline_{room.id}",
         )

@@ -194,3 +194,7 @@ class Explanation:
     views: tuple[ExplainedView, ...]
     rooms: tuple[ExplainedRoom, ...]
     groupings: tuple[Grouping, ...] = ()
+
+    def views_of(self, room: ExplainedRoom) -> list[ExplainedView]:
+        """The keyframes of a room."""
+        return [view for view in self.views if view.room == room.id]

@@ -46,7 +46,7 @@ def floors_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> F
     for axes, room in panels:
         assert room.floor is not None
         floor = room.floor
-        views = [view for view in explanation.views if view.room == room.id]
+        views = explanation.views_of(room)
         rings = [ring for ring in (floor.fitted, room.polygon) if ring is not None]
         bounds = bounds_of([*floor.pieces, *rings], margin=1.2 * reach)
         sheet = room_sheet(axes, bounds, explanation.unit, room, _sigma_text(room, explanation))

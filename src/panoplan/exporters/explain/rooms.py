@@ -46,7 +46,7 @@ def rooms_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Fi
     below, above = colour_map(_BELOW), colour_map(_ABOVE)
     colours = _joined(below, above, threshold)
     for axes, room in panels:
-        views = [view for view in explanation.views if view.room == room.id]
+        views = explanation.views_of(room)
         bounds = bounds_of([box_of(room.density), *(view.camera[None] for view in views)])
         count = f"{len(views)} keyframe" + ("" if len(views) == 1 else "s")
         sheet = room_sheet(axes, bounds, explanation.unit, room, count)

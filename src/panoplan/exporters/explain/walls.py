@@ -70,7 +70,7 @@ def walls_figure(explanation: Explanation, rooms: Sequence[ExplainedRoom]) -> Fi
     for axes, room in panels:
         assert room.walls is not None
         kept, rejected = room.walls.kept, room.walls.rejected
-        views = [view for view in explanation.views if view.room == room.id]
+        views = explanation.views_of(room)
         bounds = bounds_of([box_of(room.density), *kept], share=0.01)
         count = f"{len(kept)} kept, {len(rejected)} rejected"
         sheet = room_sheet(axes, bounds, explanation.unit, room, count)

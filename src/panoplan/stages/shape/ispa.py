@@ -42,24 +42,32 @@ class Round:
     corners: FloatArray | None
 
 
-def room_shape(
-    density: FloatArray,
-    first_cell: tuple[int, int],
-    lattice_cell: float,
-    threshold: float,
-    walls: Sequence[WallPiece],
-    orientations: Sequence[Orientation],
-    config: ShapeConfig,
-) -> RoomShape:
-    """The outline of a room.
+@dataclass(frozen=True, eq=False)
+class RoomEvidence:
+    """What a room's shape is found from.
 
-    Args:
+    Attributes:
         density: (n, m) room density on the lattice of room identification.
         first_cell: lattice index of its first cell.
-        lattice_cell: lattice cell in camera heights.
+        cell: lattice cell in camera heights.
         threshold: density from which a cell is room.
         walls: the room's accepted wall pieces.
         orientations: its likely wall directions, best supported first; may be empty.
+    """
+
+    density: FloatArray
+    first_cell: tuple[int, int]
+    cell: float
+    threshold: float
+    walls: Sequence[WallPiece]
+    orientations: Sequence[Orientation]
+
+
+def room_shape(evidence: RoomEvidence, config: ShapeConfig) -> RoomShape:
+    """The outline of a room.
+
+    Args:
+        evidence: of the room.
         config: settings.
 
     Returns:
@@ -68,7 +76,7 @@ def room_shape(
     Source: Section III-F.
     """
     outlines: list[FloatArray] = []
-    for made in rounds(density, first_cell, lattice_cell, threshold, walls, orientations, config):
+    for made in rounds(evidence, config):
         if made.candidates is None:
             return RoomShape(None, "the room's mask is empty on the grid", tuple(outlines))
         if made.corners is None:
@@ -83,20 +91,18 @@ def room_shape(
     return RoomShape(outline, None, tuple(outlines))
 
 
-def rounds(
-    density: FloatArray,
-    first_cell: tuple[int, int],
-    lattice_cell: float,
-    threshold: float,
-    walls: Sequence[WallPiece],
-    orientations: Sequence[Orientation],
-    config: ShapeConfig,
-) -> Iterator[Round]:
-    """The rounds of `room_shape`, which has the same arguments.
+def rounds(evidence: RoomEvidence, config: ShapeConfig) -> Iterator[Round]:
+    """The rounds of `room_shape`.
+
+    Args:
+        evidence: of the room.
+        config: settings.
 
     Yields:
         Each round as it is done; a failed one is the last. None where the mask is too small.
     """
+    density, first_cell, lattice_cell = evidence.density, evidence.first_cell, evidence.cell
+    threshold, orientations = evidence.threshold, evidence.orientations
     cells = np.argwhere(density >= threshold)
     if len(cells) * lattice_cell**2 < config.min_area_ch2:
         return
@@ -107,7 +113,7 @@ def rounds(
     for count in config.grids:
         grid = lay_grid(centres, lattice_cell, direction, count, config)
         mask = mask_on(grid, density, first_cell, lattice_cell, threshold)
-        wall = wall_density(grid, walls, config)
+        wall = wall_density(grid, evidence.walls, config)
         if not mask.any():
             yield Round(grid, mask, wall, None, None)
             return
