@@ -21,8 +21,8 @@ def add_parser(commands: Any) -> None:
         "run",
         help="poses and layouts become a floor plan",
         description="Turns a folder of camera poses and room layouts into a floor plan.",
-        epilog="examples: panoplan run walk/ -o plan/ --camera-height 1.5; the same with --explain "
-        "also writes plan/explain/1_scale.png, 2_rooms.png, ...",
+        epilog="example: panoplan run walk/ -o plan/ --camera-height 1.5; with --explain it also "
+        "writes plan/explain/1_scale.png, 2_rooms.png, ...",
     )
     parser.add_argument("input", type=Path, help="sequence folder or MP3D-FPE folder")
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
