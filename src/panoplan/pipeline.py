@@ -2,21 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Literal, Protocol
 
 from panoplan.config import Config
 from panoplan.datasets.scene import Scene
 from panoplan.estimator.explain import explain
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
-from panoplan.exporters.explain import FOLDER, write_explanation
+from panoplan.exporters.explain.pictures import FOLDER, forget_explanation, write_explanation
 from panoplan.exporters.pictures import write_plan_pictures
 from panoplan.formats.run_folder import RunFolder
 from panoplan.types.plan import FloorPlan, Skipped
 
-Progress = Callable[[int, int], None]
+
+class Progress(Protocol):
+    """Is told how far the work has come."""
+
+    def __call__(self, done: int, total: int, title: str = ..., /) -> None:
+        """`done` of `total`; a title where something else than keyframes is counted."""
 
 
 @dataclass(frozen=True)
@@ -43,6 +47,8 @@ def run(
 ) -> FloorPlan:
     """Estimates the plan of a scene and writes plan.json, plan.svg, plan.png and log.jsonl.
 
+    The pictures of an earlier explanation in the folder go.
+
     The walk goes on where an interrupted run with the same input and settings stopped.
 
     Args:
@@ -50,7 +56,7 @@ def run(
         config: settings.
         options: what is known of the walk.
         folder: where to; its log and its saved state are kept up to date.
-        progress: called with (keyframes done, keyframes in all).
+        progress: called with (keyframes done, keyframes in all), then with those of pictures.
 
     Returns:
         The plan.
@@ -58,6 +64,7 @@ def run(
     height = options.camera_height_m or scene.camera_height_m
     walk = Walk(options.trajectory_unit, height, len(scene.keyframes))
     state = folder.begin(scene.keyframes, config, walk)
+    forget_explanation(folder.path / FOLDER)
     estimator = FloorPlanEstimator(config, walk, state=state)
     try:
         for number in range(estimator.state.seen, len(scene.keyframes)):
@@ -74,7 +81,11 @@ def run(
     write_plan_pictures(folder.path, plan)
     if options.explain:
         explanation = explain(estimator.state, scene.keyframes, config)
-        write_explanation(folder.path / FOLDER, explanation)
+        write_explanation(
+            folder.path / FOLDER,
+            explanation,
+            lambda done, total: progress(done, total, "pictures"),
+        )
     folder.complete(plan)
     return plan
 

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from contextlib import contextmanager
+
+from panoplan.pipeline import Progress
 
 
 @contextmanager
-def progress(title: str, *, quiet: bool) -> Iterator[Callable[[int, int], None]]:
+def progress(title: str, *, quiet: bool) -> Iterator[Progress]:
     """A progress bar on stderr.
 
     Args:
@@ -15,14 +17,16 @@ def progress(title: str, *, quiet: bool) -> Iterator[Callable[[int, int], None]]
         quiet: shows nothing.
 
     Yields:
-        A function of (done, in all).
+        A function of (done, in all) and, where it changes, the title.
     """
     if quiet:
-        yield lambda done, total: None
+        yield lambda done, total, now="": None
         return
     from rich.console import Console
-    from rich.progress import Progress
+    from rich.progress import Progress as Bar
 
-    with Progress(console=Console(stderr=True), transient=True) as bar:
+    with Bar(console=Console(stderr=True), transient=True) as bar:
         task = bar.add_task(title, total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+        yield lambda done, total, now=title: bar.update(
+            task, completed=done, total=total, description=now
+        )

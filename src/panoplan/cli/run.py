@@ -21,7 +21,8 @@ def add_parser(commands: Any) -> None:
         "run",
         help="poses and layouts become a floor plan",
         description="Turns a folder of camera poses and room layouts into a floor plan.",
-        epilog="example: panoplan run walk/ -o plan/ --camera-height 1.5",
+        epilog="example: panoplan run walk/ -o plan/ --camera-height 1.5; with --explain it also "
+        "writes plan/explain/1_scale.png, 2_rooms.png, ...",
     )
     parser.add_argument("input", type=Path, help="sequence folder or MP3D-FPE folder")
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
@@ -31,7 +32,10 @@ def add_parser(commands: Any) -> None:
     parser.add_argument("--trajectory-unit", choices=["m", "unknown"], default="unknown")
     parser.add_argument("--camera-height", type=_metres, metavar="M", help="metres above the floor")
     parser.add_argument(
-        "--explain", action="store_true", help="also write a picture a stage into OUTPUT/explain"
+        "--explain",
+        action="store_true",
+        help="also write a picture a stage into OUTPUT/explain: scale, rooms, then views and fused "
+        "floors, or wall planes and the rounds of iSPA, as the preset has it",
     )
     parser.add_argument("--force", action="store_true", help="write into a folder of other files")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -29,6 +29,47 @@ from panoplan.types.plan import (
 from panoplan.types.room import RoomShape
 
 
+@dataclass(frozen=True, eq=False)
+class PlanFrame:
+    """Where the plan lies against the walk frame.
+
+    Attributes:
+        unit: of the plan.
+        length: plan units a camera height.
+        world_from_walk: (2, 2) turns vectors of the walk frame.
+        origin: (2,) of the walk frame in the plan, camera heights.
+    """
+
+    unit: Unit
+    length: float
+    world_from_walk: FloatArray
+    origin: FloatArray
+
+    def to_plan(self, points: FloatArray) -> FloatArray:
+        """(N, 2) points of the walk frame, camera heights, in the plan."""
+        return np.asarray(self.length * (points @ self.world_from_walk.T + self.origin))
+
+
+def plan_frame(state: State) -> PlanFrame:
+    """The plan's frame: metric where the camera height or the trajectory's unit is known.
+
+    Args:
+        state: what is known.
+    """
+    ch_per_su = state.ch_per_su
+    # Metres a unit of length of the method: the first camera's height.
+    length = 1.0
+    unit: Unit = "ch"
+    if state.walk.trajectory_unit == "m" and ch_per_su:
+        length, unit = 1.0 / ch_per_su, "m"
+    elif state.walk.camera_height_m is not None:
+        length, unit = state.walk.camera_height_m / state.median_height, "m"
+    if state.frame is None:
+        return PlanFrame(unit, length, np.eye(2), np.zeros(2))
+    origin = state.stretch * ch_per_su * state.frame.origin_su[[0, 2]]
+    return PlanFrame(unit, length, state.frame.walk_from_world.T, origin)
+
+
 def assemble(state: State, config: Config) -> FloorPlan:
     """The plan so far.
 
@@ -45,34 +86,16 @@ def assemble(state: State, config: Config) -> FloorPlan:
     scale = state.scale or ScaleEstimate(
         None, "unknown", converged=False, keyframes_used=len(state.waiting)
     )
-    ch_per_su = scale.ch_per_su or 0.0
+    ch_per_su = state.ch_per_su
     if state.stretch != 1.0 and scale.ch_per_su is not None:
         scale = replace(scale, ch_per_su=state.stretch * scale.ch_per_su)
-    # Metres a unit of length of the method: the first camera's height.
-    length = 1.0
-    unit: Unit = "ch"
-    if state.walk.trajectory_unit == "m" and ch_per_su:
-        length, unit = 1.0 / ch_per_su, "m"
-    elif state.walk.camera_height_m is not None:
-        length, unit = state.walk.camera_height_m / state.median_height, "m"
-    frame = state.frame
-    world_from_walk = np.eye(2) if frame is None else frame.walk_from_world.T
-    origin = np.zeros(2)
-    if frame is not None:
-        origin = state.stretch * ch_per_su * frame.origin_su[[0, 2]]
-
-    def to_plan(points: FloatArray) -> FloatArray:
-        return np.asarray(length * (points @ world_from_walk.T + origin))
-
+    frame = plan_frame(state)
+    unit, length, to_plan = frame.unit, frame.length, frame.to_plan
     members: dict[int, list[PlacedCamera]] = {room.number: [] for room in state.rooms}
     for camera in state.cameras:
         if camera.room is not None:
             members[camera.room].append(camera)
-    composed = {
-        number: shape
-        for level in state.compositions or ()
-        for number, shape in zip(level.numbers, level.shapes, strict=True)
-    }
+    composed = state.composed
     rooms: dict[int, Room] = {}
     walls = 0
     for room in state.rooms:

@@ -126,11 +126,9 @@ def _adjusted(
     Returns:
         What is known now, and how far the corrections moved a camera or a wall at most.
     """
-    assert state.scale is not None
     chosen = _holding(state, keyframes)
     views = _views(state, chosen)
     place = {view.index: k for k, view in enumerate(views)}
-    ch_per_su = state.scale.ch_per_su or 0.0
     outlined = [
         ([place[view.index] for view in state.rooms[k].views], shape.polygon)
         for k in chosen
@@ -138,7 +136,7 @@ def _adjusted(
     ]
     found = adjust(
         views,
-        ch_per_su * np.array([state.cameras[view.index].way_su for view in views]),
+        state.ch_per_su * np.array([state.cameras[view.index].way_su for view in views]),
         outlined,
         [state.cameras[view.index].correction for view in views],
         Stretch(state.stretch, scale_sigma),
@@ -181,9 +179,8 @@ def carried(state: State, index: int) -> tuple[PlacedCamera, ...]:
     before = next((state.cameras[k] for k in placed_before), None)
     if before is None or (before.correction == Correction() and state.stretch == 1.0):
         return state.cameras
-    assert state.scale is not None
     camera, old = state.cameras[index], before.correction
-    step = (state.scale.ch_per_su or 0.0) * (camera.position_su - before.position_su)
+    step = state.ch_per_su * (camera.position_su - before.position_su)
     c, s = state.stretch * np.cos(old.turn), state.stretch * np.sin(old.turn)
     shift = old.shift + np.array([[c, -s], [s, c]]) @ step - step
     moved = Correction((float(shift[0]), float(shift[1])), old.turn)

@@ -167,3 +167,17 @@ class State:
     compositions: tuple[Composition, ...] | None = ()
     cameras: tuple[PlacedCamera, ...] = ()
     skipped: tuple[Skipped, ...] = ()
+
+    @property
+    def ch_per_su(self) -> float:
+        """Camera heights a trajectory unit, as keyframes are placed; 0 while it is not known."""
+        return (None if self.scale is None else self.scale.ch_per_su) or 0.0
+
+    @property
+    def composed(self) -> dict[int, RoomShape]:
+        """The rooms' outlines as part of one plan, by room number."""
+        return {
+            number: shape
+            for level in self.compositions or ()
+            for number, shape in zip(level.numbers, level.shapes, strict=True)
+        }

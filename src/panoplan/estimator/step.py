@@ -14,7 +14,7 @@ from panoplan.estimator.state import PlacedCamera, RoomState, State, WalkFrame, 
 from panoplan.geometry.rigid import heading_of, turn
 from panoplan.stages import orientation, planes, rooms, scale
 from panoplan.stages.registration import cast, register
-from panoplan.stages.shape.ispa import room_shape
+from panoplan.stages.shape.ispa import RoomEvidence, room_shape
 from panoplan.types.events import (
     Event,
     KeyframePlaced,
@@ -194,8 +194,7 @@ def _on_level(state: State, view: CastLayout, config: Config) -> tuple[State, tu
 
     A height that drifts slowly over the walk starts no level.
     """
-    assert state.scale is not None
-    ch_per_su, levels = state.scale.ch_per_su or 0.0, config.levels
+    ch_per_su, levels = state.ch_per_su, config.levels
     higher = ch_per_su * (view.rise_su - state.levels[state.level] - state.cruise_su)
     if levels.keyframes == 0 or (abs(higher) <= levels.step_ch and not state.climbing):
         lag = view.rise_su - state.levels[state.level] - state.cruise_su
@@ -218,8 +217,7 @@ _FOLLOWING = 0.1
 
 def _arrive(state: State, rise_su: float, config: Config) -> tuple[State, tuple[Event, ...]]:
     """Places the layouts that waited for their level, on that of a height."""
-    assert state.scale is not None
-    ch_per_su, climbing = state.scale.ch_per_su or 0.0, state.climbing
+    ch_per_su, climbing = state.ch_per_su, state.climbing
     state = replace(state, climbing=())
     events: list[Event] = []
     away = [ch_per_su * abs(rise_su - base) for base in state.levels]
@@ -245,9 +243,8 @@ def _arrive(state: State, rise_su: float, config: Config) -> tuple[State, tuple[
 
 
 def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple[Event, ...]]:
-    assert state.scale is not None
     above = replace(view, rise_su=view.rise_su - state.levels[state.level])
-    layout = register(above, state.scale.ch_per_su or 0.0)
+    layout = register(above, state.ch_per_su)
     state = replace(state, cameras=carried(state, view.index))
     corrected = state.cameras[view.index].correction.apply(layout)
     if layout.height <= 0:
@@ -263,7 +260,7 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
     current = None if state.current is None else here.index(state.current)
     chosen, _ = rooms.choose(patch, known, current, config.rooms)
     fused = config.shape.method == "fusion"
-    walls, rejected = ((), ()) if fused else _walls(layout, config)
+    walls, rejected = ((), ()) if fused else walls_seen(layout, config)
     views = (layout,) if fused else ()
     if chosen is None:
         number = max((room.number for room in state.rooms), default=0) + 1
@@ -302,12 +299,12 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
     return state, (*events, *told)
 
 
-def _walls(
+def walls_seen(
     layout: RegisteredLayout, config: Config
 ) -> tuple[tuple[WallPiece, ...], tuple[RejectedPiece, ...]]:
+    """Pieces of wall in a layout and those rejected, the same whenever it is asked for."""
     rng = np.random.default_rng([config.seed, layout.index])
-    accepted, rejected = planes.wall_pieces(layout, config.planes, rng)
-    return tuple(accepted), tuple(rejected)
+    return planes.wall_pieces(layout, config.planes, rng)
 
 
 def _assigned(
@@ -423,16 +420,20 @@ def _shape(state: State, index: int, config: Config) -> tuple[State, tuple[Event
         return state, ()
     if config.shape.method == "fusion":
         return settle_around(state, index, config)
+    shape = room_shape(evidence_of(room, config), config.shape)
+    shaped = replace(room, shape=shape, stale=False)
+    state = replace(state, rooms=(*state.rooms[:index], shaped, *state.rooms[index + 1 :]))
+    return state, (RoomShaped(room_id(room.number), shape.polygon, shape.failure),)
+
+
+def evidence_of(room: RoomState, config: Config) -> RoomEvidence:
+    """What iSPA shapes a room from."""
     directions, _ = orientation.accepted(room.orientations, config.orientation)
-    shape = room_shape(
+    return RoomEvidence(
         rooms.density(room.density, config.rooms),
         room.density.first_cell,
         config.rooms.cell_ch,
         config.rooms.threshold,
         room.walls,
         directions,
-        config.shape,
     )
-    shaped = replace(room, shape=shape, stale=False)
-    state = replace(state, rooms=(*state.rooms[:index], shaped, *state.rooms[index + 1 :]))
-    return state, (RoomShaped(room_id(room.number), shape.polygon, shape.failure),)

@@ -20,6 +20,7 @@ from panoplan.exporters.drawing import (
     plan_text,
     room_area,
     room_colours,
+    room_outlines,
 )
 from panoplan.exporters.labels import width_em
 from panoplan.exporters.layers import add_layer
@@ -187,8 +188,8 @@ def _draw_overlay(
         if area.area > 0
     ]
     add_layer(axes, "overlay", fills, 10)
-    add_layer(axes, "true_outlines", _outlines(true, sheet, TRUE_COLOUR, 1.0), 11)
-    add_layer(axes, "predicted_outlines", _outlines(moved, sheet, PREDICTED_COLOUR, 1.3), 12)
+    add_layer(axes, "true_outlines", room_outlines(true, sheet, TRUE_COLOUR, 1.0), 11)
+    add_layer(axes, "predicted_outlines", room_outlines(moved, sheet, PREDICTED_COLOUR, 1.3), 12)
     add_layer(axes, "predicted_corners", _dots(moved, sheet), 13)
     _legend(axes, sheet)
 
@@ -196,22 +197,6 @@ def _draw_overlay(
 def _floor(plan: FloorPlan) -> Any:
     areas = [room_area(room) for room in plan.rooms if room.polygon is not None]
     return shapely.union_all(areas)
-
-
-def _outlines(plan: FloorPlan, sheet: Sheet, colour: str, width: float) -> list[Artist]:
-    from matplotlib.patches import PathPatch
-
-    return [
-        PathPatch(
-            outline_path(area),
-            facecolor="none",
-            edgecolor=colour,
-            linewidth=width * sheet.weight,
-            joinstyle="miter",
-        )
-        for room in plan.rooms
-        if room.polygon is not None and not (area := room_area(room)).is_empty
-    ]
 
 
 def _dots(plan: FloorPlan, sheet: Sheet) -> list[Artist]:

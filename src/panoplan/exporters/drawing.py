@@ -19,7 +19,7 @@ from panoplan.exporters.labels import (
 )
 from panoplan.metrics.rooms import region
 from panoplan.types.arrays import FloatArray
-from panoplan.types.plan import FloorPlan, Room
+from panoplan.types.plan import FloorPlan, Room, Unit
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -167,7 +167,7 @@ def draw_plan(
 
     layers: list[tuple[str, list[Artist]]] = [
         ("rooms", _fills(plan, fills)),
-        ("walls", _outlines(plan, sheet)),
+        ("walls", room_outlines(plan, sheet, WALL_COLOUR, 1.9)),
         ("openings", _segments(plan, sheet)),
     ]
     if shown.path:
@@ -180,11 +180,42 @@ def draw_plan(
         told = _totals(plan)
         if points_per_unit is not None and plan.unit == "m":
             told += f"   1:{72.0 / 0.0254 / points_per_unit:.0f}"
-        layers.append(("scale", _footer(plan, sheet, told, lines)))
+        layers.append(("scale", _footer(plan.unit, sheet, told, lines)))
     if title:
         layers.append(("title", [_title(title, sheet)]))
     for order, (name, marks) in enumerate(layers):
         add_layer(axes, name, marks, order)
+    return sheet
+
+
+def draw_sheet(
+    axes: Axes,
+    bounds: tuple[FloatArray, FloatArray],
+    unit: Unit,
+    *,
+    title: str = "",
+    told: str = "",
+    weight: float | None = None,
+) -> Sheet:
+    """Lays out axes as `draw_plan` does, with title and scale bar, for other marks than a plan's.
+
+    Args:
+        axes: empty axes of a figure whose size is settled.
+        bounds: least and greatest coordinates to be shown.
+        unit: of the coordinates.
+        title: text above.
+        told: text beside the scale bar.
+        weight: factor of line widths and font sizes; None for that of a plan on these axes.
+
+    Returns:
+        How the plane lies on the axes.
+    """
+    from panoplan.exporters.layers import add_layer
+
+    sheet, _ = _laid_out(axes, *bounds, [], Shown(), bool(title), weight=weight)
+    add_layer(axes, "scale", _footer(unit, sheet, told, []), 20)
+    if title:
+        add_layer(axes, "title", [_title(title, sheet)], 21)
     return sheet
 
 
@@ -247,13 +278,14 @@ def _laid_out(
     shown: Shown,
     title: bool,
     points_per_unit: float | None = None,
+    weight: float | None = None,
 ) -> tuple[Sheet, list[str]]:
     """Sets the limits of the axes and says how the plan lies in them."""
     figure = axes.get_figure(root=True)
     assert figure is not None
     box = axes.get_window_extent()
     width, height = box.width * 72.0 / figure.dpi, box.height * 72.0 / figure.dpi
-    weight = _weight(width, height)
+    weight = weight or _weight(width, height)
     margin = min(_MARGIN_PT, 0.06 * min(width, height))
     most = _NOTE_LINES if shown.note_lines is None else shown.note_lines
     lines = _wrapped(notes, width - 2 * margin, weight, most) if shown.footer else []
@@ -352,15 +384,16 @@ def _fills(plan: FloorPlan, colours: Mapping[str, str]) -> list[Artist]:
     ]
 
 
-def _outlines(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
+def room_outlines(plan: FloorPlan, sheet: Sheet, colour: str, width: float) -> list[Artist]:
+    """The outlines of the rooms, `width` points wide on a sheet of weight 1."""
     from matplotlib.patches import PathPatch
 
     return [
         PathPatch(
             outline_path(area),
             facecolor="none",
-            edgecolor=WALL_COLOUR,
-            linewidth=1.9 * sheet.weight,
+            edgecolor=colour,
+            linewidth=width * sheet.weight,
             joinstyle="miter",
             gid=f"outline_{room.id}",
         )
@@ -496,10 +529,15 @@ def bar_length(extent: float) -> float:
     return float(max(step * power for step in (1, 2, 5) if step * power <= goal))
 
 
-def _footer(plan: FloorPlan, sheet: Sheet, totals: str, lines: Sequence[str]) -> list[Artist]:
+def unit_name(unit: Unit, length: float) -> str:
+    """What a length in plan units is followed by."""
+    return "m" if unit == "m" else "camera height" if length == 1 else "camera heights"
+
+
+def _footer(unit: Unit, sheet: Sheet, totals: str, lines: Sequence[str]) -> list[Artist]:
     left = footer_left(sheet)
     bar = float(sheet.low[1]) - sheet.units(20.0 * sheet.weight)
-    marks = _scale_bar(plan, sheet, (left, bar), totals)
+    marks = _scale_bar(unit, sheet, (left, bar), totals)
     for k, line in enumerate(lines):
         y = bar - sheet.units((14.0 + 10.5 * k) * sheet.weight)
         marks.append(
@@ -508,9 +546,7 @@ def _footer(plan: FloorPlan, sheet: Sheet, totals: str, lines: Sequence[str]) ->
     return marks
 
 
-def _scale_bar(
-    plan: FloorPlan, sheet: Sheet, place: tuple[float, float], totals: str
-) -> list[Artist]:
+def _scale_bar(unit: Unit, sheet: Sheet, place: tuple[float, float], totals: str) -> list[Artist]:
     """A bar of two fields, its length beside it, and the totals."""
     from matplotlib.patches import Rectangle
 
@@ -528,8 +564,7 @@ def _scale_bar(
         )
         for k, colour in enumerate((WALL_COLOUR, "white"))
     ]
-    unit = "m" if plan.unit == "m" else "camera height" if length == 1 else "camera heights"
-    told = f"{length:g} {unit}"
+    told = f"{length:g} {unit_name(unit, length)}"
     start = left + length + sheet.units(6.0 * sheet.weight)
     middle = y + height / 2
     marks.append(plan_text(start, middle, told, size, WALL_COLOUR, ha="left", va="center"))

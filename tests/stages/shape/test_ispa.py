@@ -8,7 +8,7 @@ from tests.scenes import L_SHAPE, RECTANGLE, T_SHAPE
 
 from panoplan.config import ShapeConfig
 from panoplan.geometry.polygons import signed_area
-from panoplan.stages.shape.ispa import room_shape
+from panoplan.stages.shape.ispa import RoomEvidence, room_shape
 from panoplan.types.room import Orientation, WallPiece
 
 CONFIG = ShapeConfig()
@@ -39,11 +39,9 @@ def _orientations(*degrees):
 
 
 def _shape(polygon, config=CONFIG, walls=None, turn=0.0):
-    density, first = _density(polygon)
-    return room_shape(
-        density, first, CELL, 0.5, _walls(polygon) if walls is None else walls,
-        _orientations(turn, turn + 90), config,
-    )  # fmt: skip
+    walls = _walls(polygon) if walls is None else walls
+    orientations = _orientations(turn, turn + 90)
+    return room_shape(RoomEvidence(*_density(polygon), CELL, 0.5, walls, orientations), config)
 
 
 def _turned(polygon, degrees):
@@ -88,7 +86,9 @@ def test_limited_edges_leave_corners_that_later_rounds_remove():
 
 def test_walls_place_the_outline_where_the_mask_is_a_little_small():
     density, first = _density(RECTANGLE * 0.97)
-    shape = room_shape(density, first, CELL, 0.5, _walls(RECTANGLE), _orientations(0, 90), CONFIG)
+    walls, orientations = _walls(RECTANGLE), _orientations(0, 90)
+    evidence = RoomEvidence(density, first, CELL, 0.5, walls, orientations)
+    shape = room_shape(evidence, CONFIG)
     gaps = np.linalg.norm(shape.polygon[:, None] - RECTANGLE[None], axis=2).min(axis=0)
     assert gaps.max() < 0.07
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import ndimage
@@ -25,11 +25,13 @@ class PlannedRoom:
     Attributes:
         members: indices of its views, increasing; views from its doorways last.
         shape: its outline, or why there is none.
+        floor: that the outline is of, None where its views agree on none.
         doorway: whether it was seen from its doorway only.
     """
 
     members: tuple[int, ...]
     shape: RoomShape
+    floor: Floor | None
     doorway: bool = False
 
 
@@ -71,7 +73,7 @@ def plan_rooms(
         else:
             taken.add(floor)
             shape = outline(floor, own, config.outline, config.fusion)
-        rooms.append(PlannedRoom(members, shape))
+        rooms.append(PlannedRoom(members, shape, floor))
     through_door: dict[int, list[int]] = {}
     closets: list[PlannedRoom] = []
     for view in grouping.doorways:
@@ -82,7 +84,7 @@ def plan_rooms(
         else:
             closets.append(closet)
     rooms = [
-        PlannedRoom((*room.members, *through_door.get(k, [])), room.shape)
+        replace(room, members=(*room.members, *through_door.get(k, [])))
         for k, room in enumerate(rooms)
     ]
     return tuple(sorted((*rooms, *closets), key=lambda room: min(room.members)))
@@ -140,7 +142,7 @@ def _closet(view: int, seen: Sights, taken: _Taken, config: Config) -> PlannedRo
     if shape.polygon is None:
         return None
     taken.add(floor)
-    return PlannedRoom((view,), shape, doorway=True)
+    return PlannedRoom((view,), shape, floor, doorway=True)
 
 
 def _home(

@@ -87,7 +87,7 @@ def outline(floor: Floor, views: Sights, config: OutlineConfig, fusion: FusionCo
     if floor.mask.sum() * fusion.cell_ch**2 < fusion.min_area_ch2:
         return RoomShape(None, "its floor is smaller than a room's")
     columns = _columns(views)
-    pieces = _pieces(floor.mask, floor.field, floor.first_cell, config, fusion)
+    pieces = cut(floor, config, fusion)
     walls = _walls(pieces, columns, config)
     ring, sigmas = _corners(walls)
     if not _is_simple(ring):
@@ -109,6 +109,20 @@ def outline(floor: Floor, views: Sights, config: OutlineConfig, fusion: FusionCo
         ):
             holes.append(hole)
     return RoomShape(ring, None, sigmas=sigmas, holes=tuple(holes))
+
+
+def cut(floor: Floor, config: OutlineConfig, fusion: FusionConfig) -> list[FloatArray]:
+    """The zero line of a floor's field cut into straight pieces, before walls are fitted.
+
+    Args:
+        floor: of the room.
+        config: settings.
+        fusion: settings of the field.
+
+    Returns:
+        (N, 2) points of each piece, walk frame, counter-clockwise.
+    """
+    return _pieces(floor.mask, floor.field, floor.first_cell, config, fusion)
 
 
 def _columns(views: Sights) -> _Columns:

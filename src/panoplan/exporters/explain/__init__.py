@@ -1,0 +1,1 @@
+"""A picture a stage: why a plan is as it is."""
