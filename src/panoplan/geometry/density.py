@@ -59,6 +59,22 @@ def registered_entropy(
     )
 
 
+# Cells farther from the origin than this are all one, so that no pose asks for endless memory.
+_FARTHEST_CELL = 2**27
+# Odd and without pattern: neighbouring cells go to slots far apart.
+_SCATTER = 0x1E3779B97F4A7C15
+
+
+@njit(cache=True)
+def _slot(keys, key):
+    """Where a cell is in the hash table, or the free place that it gets."""
+    mask = keys.size - 1
+    slot = ((key * _SCATTER) >> 32) & mask
+    while keys[slot] != key and keys[slot] >= 0:
+        slot = (slot + 1) & mask
+    return slot
+
+
 @njit(cache=True)
 def _entropy(
     offsets,
@@ -73,72 +89,70 @@ def _entropy(
     saturation,
 ):
     n_views, width = sectors.shape
+    corners = 4 if smooth else 1
     out = np.empty(scales.size)
-    histogram = np.zeros(1)
+    # Occupied cells only: a walk may be long, and one lost pose may lie anywhere.
+    size = 64
+    while size < 2 * n_views * width * corners:
+        size *= 2
+    keys = np.full(size, -1, dtype=np.int64)
+    histogram = np.zeros((size, n_sectors))
+    taken = np.empty(size, dtype=np.int64)
+    touched = np.empty(2 * n_views * width * corners, dtype=np.int64)
+    shares = np.ones(4)
+    slots = np.empty(4, dtype=np.int64)
     for k in range(scales.size):
         s = scales[k]
-        low_x, low_y, high_x, high_y = np.inf, np.inf, -np.inf, -np.inf
-        for i in range(n_views):
-            height = 1.0 + s * drops[i]
-            for u in range(width):
-                if sectors[i, u] < 0:
-                    continue
-                x = height * offsets[i, u, 0] + s * positions[i, 0]
-                y = height * offsets[i, u, 1] + s * positions[i, 1]
-                low_x, high_x = min(low_x, x), max(high_x, x)
-                low_y, high_y = min(low_y, y), max(high_y, y)
-        if low_x > high_x:
-            out[k] = 0.0
-            continue
-        # Cells are counted from the world's origin, so that the curve is one function of s.
-        ix0, iy0 = np.floor(low_x / cell) - 1, np.floor(low_y / cell) - 1
-        nx = int(np.floor(high_x / cell) - ix0) + 3
-        ny = int(np.floor(high_y / cell) - iy0) + 3
-        size = nx * ny * n_sectors
-        if histogram.size < size:
-            histogram = np.zeros(size)
-        touched = np.empty(n_views * width * (8 if smooth else 2), dtype=np.int64)
-        n_touched = 0
+        n_taken, n_touched = 0, 0
         total = 0.0
+        last_x, last_y = np.inf, np.inf
         for i in range(n_views):
             height = 1.0 + s * drops[i]
             for u in range(width):
                 first = sectors[i, u]
                 if first < 0:
                     continue
-                x = (height * offsets[i, u, 0] + s * positions[i, 0]) / cell - ix0
-                y = (height * offsets[i, u, 1] + s * positions[i, 1]) / cell - iy0
-                ix, iy = int(x), int(y)
+                # Cells are counted from the world's origin, so the curve is one function of s.
+                x = (height * offsets[i, u, 0] + s * positions[i, 0]) / cell
+                y = (height * offsets[i, u, 1] + s * positions[i, 1]) / cell
+                x = min(max(x, -_FARTHEST_CELL), _FARTHEST_CELL)
+                y = min(max(y, -_FARTHEST_CELL), _FARTHEST_CELL)
+                ix, iy = np.floor(x), np.floor(y)
+                if ix != last_x or iy != last_y:
+                    last_x, last_y = ix, iy
+                    for c in range(corners):
+                        column, row = int(ix) + c // 2, int(iy) + c % 2
+                        key = ((column + _FARTHEST_CELL) << 29) | (row + _FARTHEST_CELL)
+                        slots[c] = _slot(keys, key)
+                        if keys[slots[c]] < 0:
+                            keys[slots[c]] = key
+                            taken[n_taken] = slots[c]
+                            n_taken += 1
+                if smooth:
+                    fx, fy = x - ix, y - iy
+                    for c in range(4):
+                        shares[c] = (fx if c // 2 else 1.0 - fx) * (fy if c % 2 else 1.0 - fy)
                 for sector in range(2):
                     facing = (first + sector) % n_sectors
                     share = sector_weights[i, u] if sector == 0 else 1.0 - sector_weights[i, u]
-                    if share <= 0.0:
-                        continue
-                    if smooth:
-                        fx, fy = x - ix, y - iy
-                        for a in range(2):
-                            for b in range(2):
-                                w = share * (fx if a else 1.0 - fx) * (fy if b else 1.0 - fy)
-                                if w > 0.0:
-                                    at = ((ix + a) * ny + iy + b) * n_sectors + facing
-                                    if histogram[at] == 0.0:
-                                        touched[n_touched] = at
-                                        n_touched += 1
-                                    histogram[at] += w
-                                    total += w
-                    else:
-                        at = (ix * ny + iy) * n_sectors + facing
-                        if histogram[at] == 0.0:
-                            touched[n_touched] = at
+                    for c in range(corners):
+                        w = share * shares[c]
+                        if w <= 0.0:
+                            continue
+                        if histogram[slots[c], facing] == 0.0:
+                            touched[n_touched] = slots[c] * n_sectors + facing
                             n_touched += 1
-                        histogram[at] += share
-                        total += share
+                        histogram[slots[c], facing] += w
+                        total += w
         entropy = 0.0
+        counts = histogram.reshape(-1)
         for t in range(n_touched):
-            p = histogram[touched[t]] / total
+            p = counts[touched[t]] / total
             if saturation > 0.0:
-                p = min(histogram[touched[t]], saturation) / saturation
+                p = min(counts[touched[t]], saturation) / saturation
             entropy -= p * np.log(p)
-            histogram[touched[t]] = 0.0
+            counts[touched[t]] = 0.0
+        for t in range(n_taken):
+            keys[taken[t]] = -1
         out[k] = entropy
     return out
