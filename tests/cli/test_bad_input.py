@@ -1,4 +1,4 @@
-"""What strangers' files can hold: one line and exit 2, or counted in the plan; never a traceback."""
+"""Files from strangers: one line and exit 2, or counted in the plan; never a traceback."""
 
 import io
 import json
@@ -12,12 +12,10 @@ import pytest
 from tests.scenes import RECTANGLE, walk
 
 from panoplan.cli.main import main
-from panoplan.datasets.detect import open_scene
 from panoplan.formats.mp3d_fpe import write_mp3d_fpe
 from panoplan.formats.plan_json import read_plan
 from panoplan.formats.sequence import write_sequence
 from panoplan.types.keyframe import Keyframe
-from panoplan.types.layout import Layout
 
 CAMERAS = np.array([[-1.2, -0.7], [1.1, -0.6], [0.9, 0.8], [-0.8, 0.6]])
 

@@ -11,7 +11,7 @@ from scipy.cluster.hierarchy import fclusterdata
 
 from panoplan.config import Config
 from panoplan.stages.plan.fusion import NOBODY, Floor, Territories, floor_beside, floor_of, fuse
-from panoplan.stages.plan.grouping import group
+from panoplan.stages.plan.grouping import Group, group
 from panoplan.stages.plan.outline import outline
 from panoplan.stages.plan.sight import Sights, sights
 from panoplan.types.arrays import BoolArray
@@ -57,9 +57,14 @@ def plan_rooms(
     """
     made = []
     for apart in _separate(views, config):
+        place = {k: number for number, k in enumerate(apart)}
+        groups = None
+        if known is not None:
+            parts = (sorted(place[k] for k in members if k in place) for members in known)
+            groups = [tuple(part) for part in parts if part]
         made += [
             replace(room, members=tuple(apart[k] for k in room.members))
-            for room in _rooms_together([views[k] for k in apart], config)
+            for room in _rooms_together([views[k] for k in apart], config, groups)
         ]
     return tuple(sorted(made, key=lambda room: min(room.members)))
 
@@ -78,9 +83,10 @@ def _separate(views: Sequence[RegisteredLayout], config: Config) -> list[list[in
     return [np.flatnonzero(labels == label).tolist() for label in np.unique(labels)]
 
 
-def _rooms_together(views: Sequence[RegisteredLayout], config: Config) -> list[PlannedRoom]:
+def _rooms_together(
+    views: Sequence[RegisteredLayout], config: Config, groups: Sequence[Group] | None
+) -> list[PlannedRoom]:
     seen = sights(views)
-    groups = None if known is None else [tuple(sorted(members)) for members in known]
     grouping = group(seen, config.grouping, config.fusion, groups)
     territories = grouping.territories
     assert territories is not None
