@@ -6,16 +6,19 @@ import os
 import re
 import shutil
 import zipfile
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from tests.scenes import RECTANGLE, walk
 
 from panoplan.cli.main import main
+from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.formats.mp3d_fpe import write_mp3d_fpe
 from panoplan.formats.plan_json import read_plan
 from panoplan.formats.sequence import write_sequence
 from panoplan.types.keyframe import Keyframe
+from panoplan.types.pose import Pose
 
 CAMERAS = np.array([[-1.2, -0.7], [1.1, -0.6], [0.9, 0.8], [-0.8, 0.6]])
 
@@ -363,8 +366,24 @@ def test_a_disk_that_fills_up_leaves_no_plan(room, tmp_path, capsys, monkeypatch
     assert run(room, out) == 2
     error = capsys.readouterr().err
     assert error.count("\n") == 1
-    assert "No space left on device" in error
+    assert "settings.toml: found No space left on device" in error
     assert list(out.iterdir()) == []
+
+
+def test_a_log_that_can_no_longer_be_written(room, tmp_path, capsys, monkeypatch):
+    out, update = tmp_path / "out", FloorPlanEstimator.update
+
+    def replaced(self, keyframe):
+        (out / "log.jsonl").unlink(missing_ok=True)
+        (out / "log.jsonl").mkdir()
+        return update(self, keyframe)
+
+    monkeypatch.setattr(FloorPlanEstimator, "update", replaced)
+    assert run(room, out) == 2
+    error = capsys.readouterr().err
+    assert error.count("\n") == 1
+    assert "log.jsonl: found Is a directory; expected a place that can be written" in error
+    assert not (out / "plan.json").exists()
 
 
 @pytest.mark.parametrize(
@@ -486,3 +505,82 @@ def test_nothing_that_is_a_room_is_exit_3_with_reasons(room, tmp_path, capsys):
     plan = read_plan(tmp_path / "out" / "plan.json")
     assert all(r.polygon is None and r.failure for r in plan.rooms)
     assert plan.rooms or plan.skipped
+
+
+@pytest.mark.parametrize("preset", ["default", "paper", "released"])
+@pytest.mark.parametrize("lost", [(1e4, 0, -1e4), (1e99, 0, 0), (0, -1e6, 0)])
+def test_a_lost_pose_is_left_out_or_apart_and_the_room_is_found(preset, lost, tmp_path):
+    keyframes = walk(RECTANGLE, np.vstack([CAMERAS, CAMERAS[::-1] * 0.9]), factor=0.7)
+    astray = Pose(keyframes[5].pose.rotation, keyframes[5].pose.translation + np.array(lost))
+    keyframes[5] = replace(keyframes[5], pose=astray)
+    write_sequence(tmp_path / "room", "room", keyframes)
+    out = tmp_path / "out"
+    known = ["--trajectory-unit", "m", "--camera-height", "1.43"]
+    assert run(tmp_path / "room", out, "--preset", preset, *known) == 0
+    plan = read_plan(out / "plan.json")
+    # `paper` and `released` do not look at heights.
+    assert len(max((r.keyframes for r in plan.rooms), key=len)) >= 7
+    skipped = [s.keyframe for s in plan.skipped if s.what == "keyframe"]
+    assert skipped in ([], ["kf005"])
+
+
+NUMBERS = [b"0", b"-1", b"nan", b"inf", b"1e400", b"1e80", b"1e-80", b"9" * 30, b"null", b'"a"']
+
+
+def damaged(data, rng):
+    """Some bytes changed, cut off, taken out or put in, or a number replaced."""
+    data = bytearray(data)
+    at = int(rng.integers(len(data)))
+    match rng.integers(5):
+        case 0:
+            return bytes(data[:at])
+        case 1:
+            for k in rng.integers(len(data), size=rng.integers(1, 9)):
+                data[k] = rng.integers(256)
+        case 2:
+            del data[at : at + int(rng.integers(1, 40))]
+        case 3:
+            data[at:at] = rng.choice([b"\x00\xff", b'"', b"[", b"{", b"\n", b"#", *NUMBERS])
+        case 4:
+            found = list(re.finditer(rb"-?\d[\d.e+-]*", data))
+            if found:
+                start, stop = found[rng.integers(len(found))].span()
+                data[start:stop] = rng.choice(NUMBERS)
+    return bytes(data)
+
+
+@pytest.mark.parametrize("kind", ["sequence", "arrays", "mp3d_fpe", "corners"])
+def test_damage_of_any_kind_ends_in_an_exit_code_of_ours(
+    kind, room, fpe, tmp_path, capsys, monkeypatch
+):
+    """Seeded; a failure tells the file's damaged bytes."""
+    monkeypatch.setattr("panoplan.pipeline.write_plan_pictures", lambda *_: None)
+    folder = fpe if kind == "mp3d_fpe" else room
+    layouts = sorted((room / "layouts_pred").iterdir())
+    if kind == "corners":
+        for path in layouts:
+            path.with_suffix(".json").write_text(json.dumps({"uv": CORNERS}))
+            path.unlink()
+    files = {
+        "sequence": [room / "trajectory.tum", room / "sequence.json"],
+        "arrays": layouts,
+        "corners": [path.with_suffix(".json") for path in layouts],
+        "mp3d_fpe": sorted(path for path in fpe.rglob("*") if path.is_file()),
+    }[kind]
+    whole = {path: path.read_bytes() for path in files}
+    rng = np.random.default_rng(5)
+    ends = set()
+    for number in range(15):
+        path = files[rng.integers(len(files))]
+        path.write_bytes(damaged(whole[path], rng))
+        out = tmp_path / f"out{number}"
+        code = run(folder, out)
+        told = capsys.readouterr().err
+        assert code in (0, 2, 3), (path.name, path.read_bytes()[:4000], told)
+        assert told.count("\n") == (code == 2)
+        assert (out / "plan.json").exists() == (code != 2)
+        if code != 2:
+            read_plan(out / "plan.json")
+        path.write_bytes(whole[path])
+        ends.add(code)
+    assert 0 in ends
