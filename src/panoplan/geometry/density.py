@@ -43,36 +43,37 @@ def registered_entropy(
     Returns:
         (S,) entropies in nats.
     """
-    return np.asarray(
-        _entropy(
-            offsets,
-            sectors,
-            sector_weights,
-            positions,
-            drops,
-            scales,
-            cell,
-            n_sectors,
-            smooth,
-            saturation,
-        )
+    # Occupied cells only: a walk may be long, and one lost pose may lie anywhere.
+    most = sectors.size * (4 if smooth else 1)
+    places = np.full(1 << (2 * most - 1).bit_length(), -1, dtype=np.int64)
+    cells = np.empty((most, 2), dtype=np.int64)
+    touched = np.empty(2 * most, dtype=np.int64)
+    histogram = np.zeros(most * n_sectors)
+    out = np.empty(len(scales))
+    _entropy(
+        offsets,
+        sectors,
+        sector_weights,
+        positions,
+        drops,
+        scales,
+        cell,
+        n_sectors,
+        smooth,
+        saturation,
+        places,
+        cells,
+        touched,
+        histogram,
+        out,
     )
+    return out
 
 
 # Cells farther from the origin than this are all one, so that no pose asks for endless memory.
-_FARTHEST_CELL = 2**27
-# Odd and without pattern: neighbouring cells go to slots far apart.
+_FARTHEST_CELL = float(2**27)
+# Odd and without pattern: neighbouring cells go to places far apart.
 _SCATTER = 0x1E3779B97F4A7C15
-
-
-@njit(cache=True)
-def _slot(keys, key):
-    """Where a cell is in the hash table, or the free place that it gets."""
-    mask = keys.size - 1
-    slot = ((key * _SCATTER) >> 32) & mask
-    while keys[slot] != key and keys[slot] >= 0:
-        slot = (slot + 1) & mask
-    return slot
 
 
 @njit(cache=True)
@@ -87,72 +88,81 @@ def _entropy(
     n_sectors,
     smooth,
     saturation,
+    places,
+    cells,
+    touched,
+    histogram,
+    out,
 ):
     n_views, width = sectors.shape
     corners = 4 if smooth else 1
-    out = np.empty(scales.size)
-    # Occupied cells only: a walk may be long, and one lost pose may lie anywhere.
-    size = 64
-    while size < 2 * n_views * width * corners:
-        size *= 2
-    keys = np.full(size, -1, dtype=np.int64)
-    histogram = np.zeros((size, n_sectors))
-    taken = np.empty(size, dtype=np.int64)
-    touched = np.empty(2 * n_views * width * corners, dtype=np.int64)
-    shares = np.ones(4)
-    slots = np.empty(4, dtype=np.int64)
+    mask = places.size - 1
     for k in range(scales.size):
         s = scales[k]
-        n_taken, n_touched = 0, 0
+        low_x, low_y = np.inf, np.inf
+        for i in range(n_views):
+            height = 1.0 + s * drops[i]
+            for u in range(width):
+                if sectors[i, u] >= 0:
+                    low_x = min(low_x, height * offsets[i, u, 0] + s * positions[i, 0])
+                    low_y = min(low_y, height * offsets[i, u, 1] + s * positions[i, 1])
+        # Cells are counted from the world's origin, so that the curve is one function of s.
+        x_0 = np.floor(max(low_x / cell, -_FARTHEST_CELL)) - 1
+        y_0 = np.floor(max(low_y / cell, -_FARTHEST_CELL)) - 1
+        n_cells, n_touched = 0, 0
         total = 0.0
-        last_x, last_y = np.inf, np.inf
+        last_x, last_y = -1, -1
+        row_0, row_1, row_2, row_3 = 0, 0, 0, 0
         for i in range(n_views):
             height = 1.0 + s * drops[i]
             for u in range(width):
                 first = sectors[i, u]
                 if first < 0:
                     continue
-                # Cells are counted from the world's origin, so the curve is one function of s.
-                x = (height * offsets[i, u, 0] + s * positions[i, 0]) / cell
-                y = (height * offsets[i, u, 1] + s * positions[i, 1]) / cell
-                x = min(max(x, -_FARTHEST_CELL), _FARTHEST_CELL)
-                y = min(max(y, -_FARTHEST_CELL), _FARTHEST_CELL)
-                ix, iy = np.floor(x), np.floor(y)
+                x = (height * offsets[i, u, 0] + s * positions[i, 0]) / cell - x_0
+                y = (height * offsets[i, u, 1] + s * positions[i, 1]) / cell - y_0
+                x = min(max(x, 0.0), 2 * _FARTHEST_CELL)
+                y = min(max(y, 0.0), 2 * _FARTHEST_CELL)
+                ix, iy = int(x), int(y)
                 if ix != last_x or iy != last_y:
                     last_x, last_y = ix, iy
                     for c in range(corners):
-                        column, row = int(ix) + c // 2, int(iy) + c % 2
-                        key = ((column + _FARTHEST_CELL) << 29) | (row + _FARTHEST_CELL)
-                        slots[c] = _slot(keys, key)
-                        if keys[slots[c]] < 0:
-                            keys[slots[c]] = key
-                            taken[n_taken] = slots[c]
-                            n_taken += 1
-                if smooth:
-                    fx, fy = x - ix, y - iy
-                    for c in range(4):
-                        shares[c] = (fx if c // 2 else 1.0 - fx) * (fy if c % 2 else 1.0 - fy)
+                        key = ((ix + (c >> 1)) << 29) + iy + (c & 1)
+                        place = ((key * _SCATTER) >> 32) & mask
+                        # Open addressing: a place holds the number of a cell, or -1.
+                        while places[place] >= 0 and cells[places[place], 0] != key:
+                            place = (place + 1) & mask
+                        if places[place] < 0:
+                            places[place] = n_cells
+                            cells[n_cells, 0] = key
+                            cells[n_cells, 1] = place
+                            n_cells += 1
+                        row_0, row_1, row_2, row_3 = row_1, row_2, row_3, places[place]
+                fx, fy = x - ix, y - iy
                 for sector in range(2):
-                    facing = (first + sector) % n_sectors
-                    share = sector_weights[i, u] if sector == 0 else 1.0 - sector_weights[i, u]
-                    for c in range(corners):
-                        w = share * shares[c]
+                    share = 1.0 - sector_weights[i, u] if sector else sector_weights[i, u]
+                    facing = first + sector if first + sector < n_sectors else 0
+                    for c in range(4 - corners, 4):
+                        row = row_0 if c == 0 else row_1 if c == 1 else row_2 if c == 2 else row_3
+                        w = share
+                        if smooth:
+                            w = share * (fx if c > 1 else 1.0 - fx) * (fy if c & 1 else 1.0 - fy)
                         if w <= 0.0:
                             continue
-                        if histogram[slots[c], facing] == 0.0:
-                            touched[n_touched] = slots[c] * n_sectors + facing
+                        at = row * n_sectors + facing
+                        if histogram[at] == 0.0:
+                            touched[n_touched] = at
                             n_touched += 1
-                        histogram[slots[c], facing] += w
+                        histogram[at] += w
                         total += w
         entropy = 0.0
-        counts = histogram.reshape(-1)
         for t in range(n_touched):
-            p = counts[touched[t]] / total
+            count = histogram[touched[t]]
+            histogram[touched[t]] = 0.0
+            p = count / total
             if saturation > 0.0:
-                p = min(counts[touched[t]], saturation) / saturation
+                p = min(count, saturation) / saturation
             entropy -= p * np.log(p)
-            counts[touched[t]] = 0.0
-        for t in range(n_taken):
-            keys[taken[t]] = -1
+        for row in range(n_cells):
+            places[cells[row, 1]] = -1
         out[k] = entropy
-    return out
