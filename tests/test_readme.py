@@ -31,10 +31,11 @@ def test_the_live_example_runs(capsys):
 
     names = {"your_camera": your_camera}
     exec(compile(program, str(README), "exec"), names)
-    told = capsys.readouterr().out
-    assert "ScaleFrozen" in told
-    assert "RoomOpened" in told
+    # So short a walk gets its scale at its end.
+    assert capsys.readouterr().out.count("KeyframeWaiting") == len(cameras)
+    assert names["plan"].scale.ch_per_su == pytest.approx(3.0, rel=0.02)
     (room,) = names["plan"].rooms
+    assert np.sort(np.ptp(room.polygon, axis=0)) == pytest.approx([3.0, 4.0], rel=0.02)
     assert len(room.polygon) == 4
 
 

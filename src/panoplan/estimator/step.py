@@ -247,8 +247,8 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
     layout = register(above, state.ch_per_su)
     state = replace(state, cameras=carried(state, view.index))
     corrected = state.cameras[view.index].correction.apply(layout)
-    if layout.height <= 0:
-        reason = "its pose lies below the floor"
+    reason = _astray(layout)
+    if reason is not None:
         skipped = Skipped(view.keyframe, "keyframe", reason)
         return replace(state, skipped=(*state.skipped, skipped)), (
             KeyframeSkipped(view.keyframe, reason),
@@ -297,6 +297,23 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
     events += told
     state, told = _leave(state, config)
     return state, (*events, *told)
+
+
+_HIGHEST_CH = 20.0
+"""A camera is at most so far above the floor: the first one may lie on the ground."""
+_FARTHEST_CH = 1e6
+"""A camera is at most so far from the first one: a lost pose may lie anywhere."""
+
+
+def _astray(layout: RegisteredLayout) -> str | None:
+    """Why a camera cannot be where its pose says, or None."""
+    if layout.height <= 0:
+        return "its pose lies below the floor"
+    if layout.height > _HIGHEST_CH:
+        return f"its pose lies over {_HIGHEST_CH:g} camera heights above the floor"
+    if np.abs(layout.camera).max() > _FARTHEST_CH:
+        return f"its pose lies over {_FARTHEST_CH:g} camera heights away"
+    return None
 
 
 def walls_seen(

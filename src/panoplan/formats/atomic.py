@@ -1,4 +1,4 @@
-"""Files that are either whole or not there."""
+"""Files that are either whole or not there, and logs that grow."""
 
 from __future__ import annotations
 
@@ -45,6 +45,21 @@ def write_bytes(path: Path, data: bytes) -> None:
 def write_text(path: Path, text: str) -> None:
     """Writes a UTF-8 text file as `write_bytes` does."""
     write_bytes(path, text.encode("utf-8"))
+
+
+def append_text(path: Path, text: str) -> None:
+    """Appends UTF-8 text to a file.
+
+    Raises:
+        InputError: the place cannot be written.
+    """
+    try:
+        with path.open("a", encoding="utf-8") as stream:
+            stream.write(text)
+    except OSError as error:
+        raise InputError(
+            path, f"{error.strerror or error}", "a place that can be written"
+        ) from None
 
 
 def make_folder(path: Path) -> None:

@@ -17,7 +17,7 @@ from panoplan import __version__
 from panoplan.config import Config, as_dict
 from panoplan.errors import InputError
 from panoplan.estimator.state import State, Walk
-from panoplan.formats.atomic import write_text
+from panoplan.formats.atomic import append_text, write_text
 from panoplan.formats.plan_json import write_plan
 from panoplan.formats.state import read_state, write_state
 from panoplan.types.events import Event
@@ -86,10 +86,14 @@ class RunFolder:
 
     def record(self, number: int, events: Sequence[Event]) -> None:
         """Appends events of keyframe `number` to log.jsonl."""
-        with (self.path / _LOG).open("a", encoding="utf-8") as stream:
-            for event in events:
-                line = {"keyframe_number": number, "event": type(event).__name__, **_plain(event)}
-                stream.write(json.dumps(line, ensure_ascii=False) + "\n")
+        lines = (
+            {"keyframe_number": number, "event": type(event).__name__, **_plain(event)}
+            for event in events
+        )
+        append_text(
+            self.path / _LOG,
+            "".join(json.dumps(line, ensure_ascii=False) + "\n" for line in lines),
+        )
 
     def save(self, state: State, *, now: bool = False) -> None:
         """Saves the state every few seconds, or at once."""
@@ -117,12 +121,12 @@ class RunFolder:
         path = self.path / _LOG
         if number == 0 or not path.exists():
             return []
-        lines = path.read_text(encoding="utf-8").splitlines(keepends=True)
-        return [
-            line
-            for line in lines
-            if line.endswith("\n") and json.loads(line)["keyframe_number"] < number
-        ]
+        try:
+            with path.open(encoding="utf-8") as stream:
+                whole = [line for line in stream if line.endswith("\n")]
+            return [line for line in whole if json.loads(line)["keyframe_number"] < number]
+        except (OSError, ValueError, KeyError, TypeError):
+            raise InputError(path, "a damaged log", "that of the unfinished run, or none") from None
 
 
 def _plain(value: Any) -> Any:

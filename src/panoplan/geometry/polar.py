@@ -272,15 +272,16 @@ def at_boundaries(
         (V,) whether they do. Where a view's boundary is unknown in the direction of a camera it
         says nothing of it.
     """
-    return np.asarray(_at_boundaries(cameras, profiles, reach, limit))
+    found = np.zeros(len(cameras), dtype=np.bool_)
+    bins = profiles.shape[1]
+    angles = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
+    _at_boundaries(cameras, profiles, np.sin(angles), np.cos(angles), reach, limit, found)
+    return found
 
 
 @njit(cache=True)
-def _at_boundaries(cameras, profiles, reach, limit):
+def _at_boundaries(cameras, profiles, sines, cosines, reach, limit, found):
     views, bins = profiles.shape
-    found = np.zeros(views, dtype=np.bool_)
-    angles = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
-    sines, cosines = np.sin(angles), np.cos(angles)
     for i in range(views):
         for j in range(views):
             x, y = cameras[i, 0] - cameras[j, 0], cameras[i, 1] - cameras[j, 1]
@@ -303,7 +304,6 @@ def _at_boundaries(cameras, profiles, reach, limit):
             elif away < ahead:
                 found[i] = False
                 break
-    return found
 
 
 def mutual_overlaps(
@@ -330,7 +330,10 @@ def mutual_overlaps(
     starts = np.concatenate([[0], np.cumsum(sizes)])
     words = np.zeros(starts[-1], dtype=np.uint64)
     _fill_words(cameras, profiles, radius, cell, low, high, starts, words)
-    return np.asarray(_word_overlaps(low, high, starts, words))
+    areas = np.zeros(len(cameras))
+    common = np.eye(len(cameras))
+    _word_overlaps(low, high, starts, words, areas, common)
+    return common
 
 
 _WORD = 64
@@ -362,13 +365,11 @@ def _bits(word):
 
 
 @njit(cache=True)
-def _word_overlaps(low, high, starts, words):
+def _word_overlaps(low, high, starts, words, area, out):
     views = low.shape[0]
-    area = np.zeros(views)
     for v in range(views):
         for k in range(starts[v], starts[v + 1]):
             area[v] += _bits(words[k])
-    out = np.eye(views)
     for a in range(views):
         for b in range(a):
             i0, i1 = max(low[a, 0], low[b, 0]), min(high[a, 0], high[b, 0])
@@ -383,4 +384,3 @@ def _word_overlaps(low, high, starts, words):
                     common += _bits(words[row_a + j] & words[row_b + j])
             out[a, b] = common / max(1.0, min(area[a], area[b]))
             out[b, a] = out[a, b]
-    return out

@@ -9,7 +9,6 @@ from numba import njit
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
-IntArray = NDArray[np.int64]
 
 
 def resampled(ring: FloatArray, step: float) -> FloatArray:
@@ -51,26 +50,30 @@ def straight_pieces(ring: FloatArray, sigma: float, corner_cost: float) -> list[
         if last or len(cuts) <= 3:
             break
         # The farthest point need not be a corner; one in the middle of the first cut is.
-        turn += int(cuts[len(cuts) // 2])
+        turn += cuts[len(cuts) // 2]
     opened = np.roll(ring, -turn, axis=0)
     return [opened[i:j] for i, j in itertools.pairwise(cuts)]
 
 
-@njit(cache=True)
-def _cuts(points, variance, corner_cost):
-    n = points.shape[0]
+def _cuts(points: FloatArray, variance: float, corner_cost: float) -> list[int]:
+    """First indices of the pieces that cost least, and the number of points."""
+    n = len(points)
+    x, y = points.T
     sums = np.zeros((n + 1, 5))
-    for i in range(n):
-        x, y = points[i, 0], points[i, 1]
-        sums[i + 1, 0] = sums[i, 0] + x
-        sums[i + 1, 1] = sums[i, 1] + y
-        sums[i + 1, 2] = sums[i, 2] + x * x
-        sums[i + 1, 3] = sums[i, 3] + y * y
-        sums[i + 1, 4] = sums[i, 4] + x * y
+    np.cumsum(np.stack([x, y, x * x, y * y, x * y], axis=1), axis=0, out=sums[1:])
     best = np.full(n + 1, np.inf)
-    before = np.zeros(n + 1, dtype=np.int64)
     best[0] = 0.0
-    for j in range(2, n + 1):
+    before = np.zeros(n + 1, dtype=np.int64)
+    _cheapest(sums, variance, corner_cost, best, before)
+    cuts = [n]
+    while cuts[-1] > 0:
+        cuts.append(int(before[cuts[-1]]))
+    return cuts[::-1]
+
+
+@njit(cache=True)
+def _cheapest(sums, variance, corner_cost, best, before):
+    for j in range(2, best.size):
         for i in range(j - 1):
             if best[i] + corner_cost >= best[j]:
                 continue
@@ -85,14 +88,3 @@ def _cuts(points, variance, corner_cost):
             if cost < best[j]:
                 best[j] = cost
                 before[j] = i
-    count = 1
-    j = n
-    while j > 0:
-        j = before[j]
-        count += 1
-    cuts = np.zeros(count, dtype=np.int64)
-    j = n
-    for k in range(count - 1, -1, -1):
-        cuts[k] = j
-        j = before[j]
-    return cuts

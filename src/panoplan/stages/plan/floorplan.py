@@ -7,10 +7,11 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import ndimage
+from scipy.cluster.hierarchy import fclusterdata
 
 from panoplan.config import Config
 from panoplan.stages.plan.fusion import NOBODY, Floor, Territories, floor_beside, floor_of, fuse
-from panoplan.stages.plan.grouping import group
+from panoplan.stages.plan.grouping import Group, group
 from panoplan.stages.plan.outline import outline
 from panoplan.stages.plan.sight import Sights, sights
 from panoplan.types.arrays import BoolArray
@@ -54,10 +55,38 @@ def plan_rooms(
     Returns:
         The rooms by their first view; every view is a member of exactly one.
     """
-    if not views:
-        return ()
+    made = []
+    for apart in _separate(views, config):
+        place = {k: number for number, k in enumerate(apart)}
+        groups = None
+        if known is not None:
+            parts = (sorted(place[k] for k in members if k in place) for members in known)
+            groups = [tuple(part) for part in parts if part]
+        made += [
+            replace(room, members=tuple(apart[k] for k in room.members))
+            for room in _rooms_together([views[k] for k in apart], config, groups)
+        ]
+    return tuple(sorted(made, key=lambda room: min(room.members)))
+
+
+def _separate(views: Sequence[RegisteredLayout], config: Config) -> list[list[int]]:
+    """Sets of views that have nothing to do with one another.
+
+    They lie so far apart that no two regions touch; one lattice over all of them would take
+    memory without end where a single pose is lost.
+    """
+    if len(views) < 2:
+        return [list(range(len(views)))] if views else []
+    reach = 2 * max(config.fusion.reach_ch, config.grouping.reach_ch) + 1.0
+    cameras = np.array([view.camera for view in views])
+    labels = fclusterdata(cameras, reach, criterion="distance", method="single")
+    return [np.flatnonzero(labels == label).tolist() for label in np.unique(labels)]
+
+
+def _rooms_together(
+    views: Sequence[RegisteredLayout], config: Config, groups: Sequence[Group] | None
+) -> list[PlannedRoom]:
     seen = sights(views)
-    groups = None if known is None else [tuple(sorted(members)) for members in known]
     grouping = group(seen, config.grouping, config.fusion, groups)
     territories = grouping.territories
     assert territories is not None
@@ -87,7 +116,7 @@ def plan_rooms(
         replace(room, members=(*room.members, *through_door.get(k, [])))
         for k, room in enumerate(rooms)
     ]
-    return tuple(sorted((*rooms, *closets), key=lambda room: min(room.members)))
+    return [*rooms, *closets]
 
 
 @dataclass
