@@ -1,5 +1,7 @@
 import json
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -68,6 +70,18 @@ def test_version_and_help(capsys):
             main(words)
         assert stop.value.code == 0
     assert "example: panoplan run" in capsys.readouterr().out
+
+
+def test_help_loads_nothing_heavy():
+    program = (
+        "import sys\nfrom panoplan.cli.main import main\n"
+        "try:\n    main(['run', '--help'])\nexcept SystemExit:\n    pass\n"
+        "print(*sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert "--camera-height" in done.stdout
+    loaded = set(done.stdout.splitlines()[-1].split())
+    assert not loaded & {"numba", "scipy", "matplotlib", "shapely", "jsonschema", "rich"}
 
 
 @pytest.mark.parametrize(

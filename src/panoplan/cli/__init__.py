@@ -1,1 +1,4 @@
-"""Parse, call a library function, print."""
+"""Parse, call a library function, print.
+
+A command imports what it runs when it runs, so that a mistyped one is told at once.
+"""

@@ -7,8 +7,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-from panoplan.bench import accuracy, home, runtime, table
-from panoplan.bench.record import record
 from panoplan.cli import settings
 from panoplan.cli.progress import progress
 from panoplan.errors import InputError
@@ -43,6 +41,9 @@ def add_parser(commands: Any) -> None:
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
+    from panoplan.bench import accuracy, home, runtime, table
+    from panoplan.bench.record import record
+
     if options.what in ("home", "table") and options.input is None:
         raise InputError(f"bench {options.what}", "no path", "bench home SCENE or bench table PAGE")
     if options.what == "table":

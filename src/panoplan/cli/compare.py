@@ -7,9 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from panoplan.cli.evaluate import add_truth_arguments
-from panoplan.datasets.detect import read_truth
-from panoplan.exporters.compare import write_comparison
-from panoplan.formats.plan_json import read_plan
 
 
 def add_parser(commands: Any) -> None:
@@ -27,6 +24,10 @@ def add_parser(commands: Any) -> None:
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
+    from panoplan.datasets.detect import read_truth
+    from panoplan.exporters.compare import write_comparison
+    from panoplan.formats.plan_json import read_plan
+
     write_comparison(
         options.output,
         read_plan(options.plan),

@@ -7,11 +7,6 @@ import json
 from pathlib import Path
 from typing import Any
 
-from panoplan.datasets.detect import read_truth
-from panoplan.formats.plan_json import read_plan
-from panoplan.formats.tum import read_tum
-from panoplan.metrics.report import as_dict, as_table, evaluate
-
 
 def add_truth_arguments(parser: argparse.ArgumentParser) -> None:
     """Adds what says which plan is compared with which truth, and how."""
@@ -46,6 +41,11 @@ def add_parser(commands: Any) -> None:
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
+    from panoplan.datasets.detect import read_truth
+    from panoplan.formats.plan_json import read_plan
+    from panoplan.formats.tum import read_tum
+    from panoplan.metrics.report import as_dict, as_table, evaluate
+
     visited = None
     if options.visited is not None:
         visited = read_tum(options.visited).translations[:, [0, 2]]

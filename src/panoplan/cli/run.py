@@ -8,9 +8,6 @@ from typing import Any
 
 from panoplan.cli import settings
 from panoplan.cli.progress import progress
-from panoplan.datasets.detect import open_scene
-from panoplan.formats.run_folder import RunFolder
-from panoplan.pipeline import RunOptions, run, summary
 
 EXIT_NO_ROOM = 3
 
@@ -45,6 +42,10 @@ def add_parser(commands: Any) -> None:
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
+    from panoplan.datasets.detect import open_scene
+    from panoplan.formats.run_folder import RunFolder
+    from panoplan.pipeline import RunOptions, run, summary
+
     config = settings.resolve(options)
     scene = open_scene(
         options.input,

@@ -8,9 +8,6 @@ from pathlib import Path
 from typing import Any
 
 from panoplan.errors import InputError
-from panoplan.formats.mp3d_fpe import write_mp3d_fpe
-from panoplan.formats.sequence import write_sequence
-from panoplan.simulate.scene import simulate_flat
 
 
 def add_parser(commands: Any) -> None:
@@ -38,6 +35,10 @@ def add_parser(commands: Any) -> None:
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
+    from panoplan.formats.mp3d_fpe import write_mp3d_fpe
+    from panoplan.formats.sequence import write_sequence
+    from panoplan.simulate.scene import simulate_flat
+
     if not 0.05 <= options.step <= 5:
         raise InputError("--step", f"{options.step:g}", "0.05 to 5 metres")
     if options.output.exists() and (not options.output.is_dir() or any(options.output.iterdir())):
