@@ -7,7 +7,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy import ndimage
-from scipy.cluster.hierarchy import fclusterdata
+from scipy.sparse import coo_array
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 
 from panoplan.config import Config
 from panoplan.stages.plan.fusion import NOBODY, Floor, Territories, floor_beside, floor_of, fuse
@@ -75,12 +77,17 @@ def _separate(views: Sequence[RegisteredLayout], config: Config) -> list[list[in
     They lie so far apart that no two regions touch; one lattice over all of them would take
     memory without end where a single pose is lost.
     """
-    if len(views) < 2:
-        return [list(range(len(views)))] if views else []
+    if not views:
+        return []
     reach = 2 * max(config.fusion.reach_ch, config.grouping.reach_ch) + 1.0
-    cameras = np.array([view.camera for view in views])
-    labels = fclusterdata(cameras, reach, criterion="distance", method="single")
-    return [np.flatnonzero(labels == label).tolist() for label in np.unique(labels)]
+    blocks, block = np.unique(
+        np.floor(np.array([view.camera for view in views]) / reach), axis=0, return_inverse=True
+    )
+    # Between blocks that are no neighbours lies a whole one.
+    one, other = KDTree(blocks).query_pairs(1.5, p=np.inf, output_type="ndarray").T
+    touching = coo_array((np.ones(len(one)), (one, other)), shape=(len(blocks), len(blocks)))
+    count, part = connected_components(touching, directed=False)
+    return [np.flatnonzero(part[block] == k).tolist() for k in range(count)]
 
 
 def _rooms_together(
