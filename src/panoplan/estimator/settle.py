@@ -18,7 +18,7 @@ from panoplan.stages.plan.floorplan import plan_rooms
 from panoplan.stages.plan.partition import facing_walls, partition
 from panoplan.types.events import Event, RoomShaped, RoomsRegrouped
 from panoplan.types.room import RoomDensity, RoomShape, WallStretch
-from panoplan.types.view import Correction, RegisteredLayout
+from panoplan.types.view import CorrectedLayouts, Correction, RegisteredLayout
 
 
 def settle_around(state: State, index: int, config: Config) -> tuple[State, tuple[Event, ...]]:
@@ -200,7 +200,7 @@ def _regrouped(
     chosen = _holding(state, keyframes)
     before = {view.index: state.rooms[k].number for k in chosen for view in state.rooms[k].views}
     raw = _views(state, chosen)
-    views = [state.cameras[view.index].correction.apply(view) for view in raw]
+    views = CorrectedLayouts(raw, [state.cameras[view.index].correction for view in raw])
     place = {view.index: k for k, view in enumerate(raw)}
     known = [[place[view.index] for view in state.rooms[k].views] for k in chosen]
     planned = plan_rooms(views, config, known if keep else None)

@@ -7,7 +7,9 @@ the same for a walk however its world is turned or shifted.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from typing import overload
 
 import numpy as np
 
@@ -96,3 +98,47 @@ class Correction:
             sigmas=self.factor * view.sigmas,
             ceiling=self.factor * view.ceiling,
         )
+
+
+class CorrectedLayouts(Sequence[RegisteredLayout]):
+    """Layouts moved by their corrections, each made when it is asked for.
+
+    All of a long walk at once would take as much memory again.
+
+    Args:
+        layouts: as registered.
+        corrections: one each.
+    """
+
+    def __init__(
+        self, layouts: Sequence[RegisteredLayout], corrections: Sequence[Correction]
+    ) -> None:
+        self._layouts, self._corrections = layouts, corrections
+
+    def __len__(self) -> int:
+        """Number of layouts."""
+        return len(self._layouts)
+
+    @overload
+    def __getitem__(self, index: int) -> RegisteredLayout: ...
+    @overload
+    def __getitem__(self, index: slice) -> CorrectedLayouts: ...
+    def __getitem__(self, index: int | slice) -> RegisteredLayout | CorrectedLayouts:
+        """The layout at `index`, or a part of them."""
+        if isinstance(index, slice):
+            return CorrectedLayouts(self._layouts[index], self._corrections[index])
+        return self._corrections[index].apply(self._layouts[index])
+
+    def pick(self, chosen: Iterable[int]) -> CorrectedLayouts:
+        """Some of them, in the order given."""
+        at = list(chosen)
+        return CorrectedLayouts([self._layouts[k] for k in at], [self._corrections[k] for k in at])
+
+
+def picked(
+    layouts: Sequence[RegisteredLayout], chosen: Iterable[int]
+) -> Sequence[RegisteredLayout]:
+    """Some of the layouts, in the order given; corrected ones are still made when asked for."""
+    if isinstance(layouts, CorrectedLayouts):
+        return layouts.pick(chosen)
+    return tuple(layouts[k] for k in chosen)

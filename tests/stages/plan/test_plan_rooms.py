@@ -89,7 +89,7 @@ def test_the_arms_of_an_angle_are_one_room():
     corridor = np.array([[0, 0], [5, 0], [5, 1], [1, 1], [1, 5], [0, 5]], dtype=float)
     cameras = [[4, 0.5], [3, 0.4], [2.2, 0.5], [0.5, 4], [0.4, 3], [0.5, 2.2], [0.5, 0.5]]
     views = sights(_views((corridor, cameras)))
-    groups = grouping.linked(views, CONFIG.grouping)
+    groups = grouping.linked(views.cameras, views.profiles, CONFIG.grouping)
     assert len(groups) > 1
     (room,) = plan_rooms(list(views.views), CONFIG)
     assert _iou(room.shape.polygon, corridor) > 0.99

@@ -18,7 +18,7 @@ from panoplan.stages.plan.outline import outline
 from panoplan.stages.plan.sight import Sights, sights
 from panoplan.types.arrays import BoolArray
 from panoplan.types.room import RoomShape
-from panoplan.types.view import RegisteredLayout
+from panoplan.types.view import RegisteredLayout, picked
 
 
 @dataclass(frozen=True, eq=False)
@@ -66,7 +66,7 @@ def plan_rooms(
             groups = [tuple(part) for part in parts if part]
         made += [
             replace(room, members=tuple(apart[k] for k in room.members))
-            for room in _rooms_together([views[k] for k in apart], config, groups)
+            for room in _rooms_together(picked(views, apart), config, groups)
         ]
     return tuple(sorted(made, key=lambda room: min(room.members)))
 

@@ -69,7 +69,7 @@ def group(
     if known is None:
         groups = [
             tuple(int(inner[k]) for k in members)
-            for members in linked(views.pick(inner.tolist()), config)
+            for members in linked(views.cameras[inner], views.profiles[inner], config)
         ]
     else:
         kept = (tuple(k for k in members if not at_door[k]) for members in known)
@@ -99,21 +99,25 @@ def doorways(views: Sights, config: GroupingConfig) -> BoolArray:
     return at_boundaries(views.cameras, views.profiles, config.reach_ch, config.doorway_ch)
 
 
-def linked(views: Sights, config: GroupingConfig) -> list[Group]:
+def linked(cameras: FloatArray, profiles: FloatArray, config: GroupingConfig) -> list[Group]:
     """Groups views by average linkage of their common areas.
 
     Args:
-        views: at least one.
+        cameras: (V, 2) positions, V ≥ 1.
+        profiles: (V, B) ranges at evenly spaced headings.
         config: settings.
 
     Returns:
         Indices of the views of each group, by the first.
     """
-    if len(views) == 1:
+    if len(cameras) == 1:
         return [(0,)]
-    common = mutual_overlaps(views.cameras, views.profiles, config.reach_ch, config.cell_ch)
+    common = mutual_overlaps(cameras, profiles, config.reach_ch, config.cell_ch)
     np.subtract(1.0, common, out=common)
-    tree = linkage(squareform(common, checks=False), "average")
+    distances = squareform(common, checks=False)
+    # As large as a few hundred layouts.
+    del common
+    tree = linkage(distances, "average")
     labels = fcluster(tree, 1.0 - config.min_overlap, "distance")
     members: dict[int, list[int]] = {}
     for index, label in enumerate(labels.tolist()):

@@ -126,9 +126,10 @@ def cut(floor: Floor, config: OutlineConfig, fusion: FusionConfig) -> list[Float
 
 
 def _columns(views: Sights) -> _Columns:
-    points = np.concatenate([view.boundary for view in views.views])
-    sigmas = np.concatenate([view.sigmas for view in views.views])
-    counts = [len(view.boundary) for view in views.views]
+    layouts = list(views.views)
+    points = np.concatenate([view.boundary for view in layouts])
+    sigmas = np.concatenate([view.sigmas for view in layouts])
+    counts = [len(view.boundary) for view in layouts]
     view = np.repeat(np.arange(len(views)), counts)
     known = np.isfinite(points[:, 0])
     points, sigmas, view = points[known], sigmas[known], view[known]

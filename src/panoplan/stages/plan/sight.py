@@ -9,7 +9,7 @@ import numpy as np
 
 from panoplan.geometry.polar import range_profile
 from panoplan.types.arrays import FloatArray
-from panoplan.types.view import RegisteredLayout
+from panoplan.types.view import RegisteredLayout, picked
 
 _BINS = 1024
 _MAX_GAP_RAD = np.deg2rad(2.0)
@@ -29,7 +29,7 @@ class Sights:
     cameras: FloatArray
     profiles: FloatArray
     sigmas: FloatArray
-    views: tuple[RegisteredLayout, ...]
+    views: Sequence[RegisteredLayout]
 
     def __len__(self) -> int:
         """Number of views."""
@@ -38,8 +38,9 @@ class Sights:
     def pick(self, chosen: Sequence[int]) -> Sights:
         """Some of the views, in the order given."""
         at = np.asarray(chosen, dtype=np.int64)
-        views = tuple(self.views[k] for k in at)
-        return Sights(self.cameras[at], self.profiles[at], self.sigmas[at], views)
+        return Sights(
+            self.cameras[at], self.profiles[at], self.sigmas[at], picked(self.views, at.tolist())
+        )
 
 
 def sights(views: Sequence[RegisteredLayout]) -> Sights:
@@ -53,8 +54,10 @@ def sights(views: Sequence[RegisteredLayout]) -> Sights:
     """
     profiles = np.empty((len(views), _BINS))
     sigmas = np.empty((len(views), _BINS))
+    cameras = np.empty((len(views), 2))
     at = 2 * np.pi * (np.arange(_BINS) + 0.5) / _BINS - np.pi
     for k, view in enumerate(views):
+        cameras[k] = view.camera
         offsets = view.boundary - view.camera
         profiles[k] = range_profile(offsets, _BINS, _MAX_GAP_RAD)
         known = np.flatnonzero(np.isfinite(offsets[:, 0]))
@@ -62,5 +65,4 @@ def sights(views: Sequence[RegisteredLayout]) -> Sights:
         order = np.argsort(heading, kind="stable")
         after = np.searchsorted(heading[order], at) % max(1, len(known))
         sigmas[k] = view.sigmas[known[order[after]]] if len(known) else np.nan
-    cameras = np.array([view.camera for view in views]).reshape(-1, 2)
-    return Sights(cameras, profiles, sigmas, tuple(views))
+    return Sights(cameras, profiles, sigmas, views)
