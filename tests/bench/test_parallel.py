@@ -1,0 +1,30 @@
+import math
+from operator import itemgetter
+
+import pytest
+
+from panoplan.bench import accuracy
+from panoplan.bench.parallel import mapped
+from panoplan.config import preset
+
+
+@pytest.mark.parametrize("jobs", [1, 3])
+def test_results_come_in_the_order_of_the_work(jobs):
+    told = []
+    results = mapped(math.factorial, [5, 900, 3, 0], jobs, lambda *done: told.append(done))
+    assert results == [120, math.factorial(900), 6, 1]
+    assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
+
+
+def test_a_failure_in_another_process_is_raised_here():
+    with pytest.raises(IndexError):
+        mapped(itemgetter(2), [[1, 2, 3], [1]], 2, lambda *_: None)
+
+
+def test_figures_do_not_depend_on_the_number_of_processes():
+    alone, together = (
+        accuracy.measure(range(3, 4), preset("paper"), lambda *_: None, metric=True, jobs=jobs)
+        for jobs in (1, 2)
+    )
+    assert alone == together
+    assert alone["mild"]["summary"]["rooms"] > 0
