@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Iterable
+from itertools import islice
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from panoplan.estimator.state import Walk
 from panoplan.simulate.buildings import make_corridor_building
 from panoplan.simulate.scene import simulate
 from panoplan.types.events import KeyframeWaiting, RoomShaped, ScaleFrozen
+from panoplan.types.keyframe import Keyframe
 
 _ROOMS = 40
 _KEYFRAMES = 2000
@@ -32,16 +35,15 @@ def measure(config: Config, progress: Callable[[int, int], None]) -> dict[str, A
         100-200 and 1,900-2,000, whatever they do; of plan(); seconds of finish(); and the peak
         memory of the process in MB.
     """
-    building = make_corridor_building(_ROOMS, seed=1)
-    scene = simulate(building, 1, "mild", keyframes_per_room=20)
-    keyframes = scene.keyframes[:_KEYFRAMES]
-    warm = FloorPlanEstimator(config, Walk(expected_keyframes=len(keyframes)))
-    for keyframe in keyframes[: config.scale.warmup_max + 50]:
-        warm.update(keyframe)
-    estimator = FloorPlanEstimator(config, Walk(expected_keyframes=len(keyframes)))
-    plain, every = np.full(len(keyframes), np.nan), np.zeros(len(keyframes))
+    # As with a live camera, nobody keeps a keyframe once it has been taken in.
+    coming = deque(_walk())
+    count = len(coming)
+    _warm_up(islice(coming, config.scale.warmup_max + 50), count, config)
+    estimator = FloorPlanEstimator(config, Walk(expected_keyframes=count))
+    plain, every = np.full(count, np.nan), np.zeros(count)
     shaped: list[float] = []
-    for number, keyframe in enumerate(keyframes):
+    for number in range(count):
+        keyframe = coming.popleft()
         started = time.perf_counter()
         events = estimator.update(keyframe)
         taken = 1e3 * (time.perf_counter() - started)
@@ -51,7 +53,7 @@ def measure(config: Config, progress: Callable[[int, int], None]) -> dict[str, A
             shaped.append(taken)
         elif not any(isinstance(event, (KeyframeWaiting, ScaleFrozen)) for event in events):
             plain[number] = taken
-        progress(number + 1, len(keyframes))
+        progress(number + 1, count)
     started = time.perf_counter()
     plan = estimator.plan()
     plan_ms = 1e3 * (time.perf_counter() - started)
@@ -63,7 +65,7 @@ def measure(config: Config, progress: Callable[[int, int], None]) -> dict[str, A
     early, late = every[first : first + 100], every[-100:]
     early_95, late_95 = (float(np.percentile(part, 95)) for part in (early, late))
     return {
-        "keyframes": len(keyframes),
+        "keyframes": count,
         "rooms": len(plan.rooms),
         "update_ms_median": float(np.nanmedian(plain)),
         "update_ms_95_early": early_95,
@@ -76,6 +78,17 @@ def measure(config: Config, progress: Callable[[int, int], None]) -> dict[str, A
         "finish_s": finish_s,
         "peak_memory_mb": _peak_memory_mb(),
     }
+
+
+def _walk() -> tuple[Keyframe, ...]:
+    building = make_corridor_building(_ROOMS, seed=1)
+    return simulate(building, 1, "mild", keyframes_per_room=20).keyframes[:_KEYFRAMES]
+
+
+def _warm_up(keyframes: Iterable[Keyframe], count: int, config: Config) -> None:
+    estimator = FloorPlanEstimator(config, Walk(expected_keyframes=count))
+    for keyframe in keyframes:
+        estimator.update(keyframe)
 
 
 def _peak_memory_mb() -> float | None:
