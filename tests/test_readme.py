@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from tests.scenes import RECTANGLE, walk
 
-from panoplan.bench.table import BEGIN, updated
+from panoplan.bench.table import updated
 from panoplan.cli import main as command_line
 
 ROOT = Path(__file__).parents[1]
@@ -52,5 +52,5 @@ def test_its_commands_are_understood():
 @pytest.mark.parametrize("page", [README, ROOT / "docs" / "benchmarks.md"])
 def test_tables_are_those_measured(page):
     text = page.read_text(encoding="utf-8")
-    assert BEGIN in text
+    # Raises where there is no place for tables.
     assert updated(text, ROOT / "benchmarks", page) == text

@@ -3,51 +3,76 @@
 from __future__ import annotations
 
 import json
+import re
 from pathlib import Path
 from typing import Any
 
 from panoplan.errors import InputError
 from panoplan.formats.atomic import read_bytes, write_text
 
-BEGIN, END = "<!-- measured: begin -->", "<!-- measured: end -->"
+_MARKS = re.compile(
+    r"(?P<begin><!-- measured: (?P<names>[a-z, ]+) -->\n).*?(?P<end><!-- end of measured -->)",
+    re.DOTALL,
+)
 _LIMIT = 64 * 2**20
 _PRESETS = ("paper", "released", "sound", "default")
 
 
 def update(page: Path, folder: Path) -> bool:
-    """Writes the tables into a page, between its marks.
+    """Writes tables into a page, between its marks.
 
     Args:
-        page: Markdown with the two marks.
+        page: Markdown with `<!-- measured: NAMES -->` and `<!-- end of measured -->`; the names,
+            with commas, are of the tables that come between: flats, home, runtime.
         folder: of the benchmark files.
 
     Returns:
         Whether the page changed.
 
     Raises:
-        InputError: the page has no marks, or a file is no benchmark.
+        InputError: the page is not readable or has no marks, or a file is no benchmark.
     """
-    text = page.read_text(encoding="utf-8")
+    text = _text(page)
     new = updated(text, folder, page)
     if new != text:
         write_text(page, new)
     return new != text
 
 
+def _text(page: Path) -> str:
+    try:
+        return read_bytes(page, _LIMIT).decode("utf-8")
+    except UnicodeDecodeError:
+        raise InputError(page, "no text", "Markdown in UTF-8") from None
+
+
 def updated(text: str, folder: Path, page: Path) -> str:
-    """The page's text with tables made anew."""
-    head, begin, rest = text.partition(BEGIN)
-    _, end, tail = rest.partition(END)
-    if not begin or not end:
-        raise InputError(page, "no place for tables", f"{BEGIN} and {END}")
-    return f"{head}{begin}\n{tables(folder)}{end}{tail}"
+    """The page's text with tables made anew.
 
+    Args:
+        text: of the page.
+        folder: of the benchmark files.
+        page: where the text is from, for the message.
 
-def tables(folder: Path) -> str:
-    """All tables that the benchmark files of a folder make."""
+    Raises:
+        InputError: as `update`.
+    """
+    if not _MARKS.search(text):
+        wanted = "<!-- measured: flats, home, runtime --> and <!-- end of measured -->"
+        raise InputError(page, "no place for tables", wanted)
     files = [_read(path) for path in sorted(folder.glob("*.json"))]
-    parts = [_flats(files), _home(files), _runtime(files)]
-    return "\n".join(part for part in parts if part)
+    made = {"flats": _flats, "home": _home, "runtime": _runtime}
+
+    def filled(marks: re.Match[str]) -> str:
+        names = [name.strip() for name in marks["names"].split(",")]
+        unknown = sorted(set(names) - set(made))
+        if unknown:
+            raise InputError(page, f"the table {unknown[0]}", " or ".join(made))
+        parts = [made[name](files) for name in names]
+        told = "\n".join(part for part in parts if part)
+        return f"{marks['begin']}{told}{marks['end']}"
+
+    return _MARKS.sub(filled, text)
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -11,7 +11,15 @@ FloatArray = NDArray[np.float64]
 Float32Array = NDArray[np.float32]
 
 
-def range_profile(offsets: FloatArray, bins: int, max_gap: float) -> FloatArray:
+PROFILE_BINS = 1024
+"""Headings of a profile, as many as a layout usually has columns."""
+MAX_GAP_RAD = float(np.deg2rad(2.0))
+"""Between columns farther apart than this, a boundary is unknown."""
+
+
+def range_profile(
+    offsets: FloatArray, bins: int = PROFILE_BINS, max_gap: float = MAX_GAP_RAD
+) -> FloatArray:
     """Ranges at evenly spaced headings.
 
     Args:
@@ -39,12 +47,6 @@ def range_profile(offsets: FloatArray, bins: int, max_gap: float) -> FloatArray:
     close = gap <= max_gap
     out[close] = filled[close]
     return out
-
-
-def star_area(profile: FloatArray, radius: float) -> float:
-    """Area of the star-shaped region, clipped at `radius`; unknown bins count as empty."""
-    clipped = np.minimum(np.nan_to_num(profile, nan=0.0), radius)
-    return float(0.5 * np.sum(clipped**2) * 2 * np.pi / len(profile))
 
 
 def star_evidence(

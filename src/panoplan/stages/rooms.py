@@ -15,9 +15,6 @@ from panoplan.types.arrays import BoolArray, FloatArray
 from panoplan.types.room import RoomDensity
 from panoplan.types.view import RegisteredLayout
 
-_BINS = 1024
-_MAX_GAP_RAD = np.deg2rad(2.0)
-
 
 @dataclass(frozen=True, eq=False)
 class Patch:
@@ -46,7 +43,7 @@ def clipped_patch(view: RegisteredLayout, config: RoomsConfig) -> Patch:
 
     Source: Eq. 5-6.
     """
-    profile = range_profile(view.boundary - view.camera, _BINS, _MAX_GAP_RAD)
+    profile = range_profile(view.boundary - view.camera)
     reach = config.clip_radius_ch
     if config.clip_quartiles > 0 and np.isfinite(profile).any():
         far = profile > config.clip_quartiles * np.nanpercentile(profile, 25)

@@ -429,7 +429,7 @@ def _add_odometry(
     factor = np.full((count, 1), 1.0 / config.factor_sigma)
     every = np.arange(count)[:, None]
     _add(system, 4 * every + 3, factor, state[:, 3] / config.factor_sigma)
-    sure = 1.0 / max(walk.prior.sigma, _FIRST * _FIRST)
+    sure = 1.0 / (walk.prior.sigma or _HELD)
     about = 0.0 if walk.prior.sigma else np.log(walk.prior.factor)
     off = np.array([sure * (walk.stretch - about)])
     _add(system, np.array([[system.size - 1]]), np.array([[sure]]), off)
@@ -460,5 +460,7 @@ def _add(system: _System, columns: IntArray, jacobian: FloatArray, residual: Flo
 
 _FIRST = 1e-4
 """The first camera stays."""
+_HELD = 1e-8
+"""So does a scale that is given."""
 _SHORTEST_CH = 0.02
 """Who turns on the spot errs as on so much way."""

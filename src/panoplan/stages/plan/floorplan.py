@@ -29,13 +29,11 @@ class PlannedRoom:
         members: indices of its views, increasing; views from its doorways last.
         shape: its outline, or why there is none.
         floor: that the outline is of, None where its views agree on none.
-        doorway: whether it was seen from its doorway only.
     """
 
     members: tuple[int, ...]
     shape: RoomShape
     floor: Floor | None
-    doorway: bool = False
 
 
 def plan_rooms(
@@ -178,7 +176,7 @@ def _closet(view: int, seen: Sights, taken: _Taken, config: Config) -> PlannedRo
     if shape.polygon is None:
         return None
     taken.add(floor)
-    return PlannedRoom((view,), shape, floor, doorway=True)
+    return PlannedRoom((view,), shape, floor)
 
 
 def _home(

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.sparse.csgraph import connected_components
 from scipy.spatial.distance import squareform
 
 from panoplan.config import FusionConfig, GroupingConfig
@@ -119,10 +120,7 @@ def linked(cameras: FloatArray, profiles: FloatArray, config: GroupingConfig) ->
     del common
     tree = linkage(distances, "average")
     labels = fcluster(tree, 1.0 - config.min_overlap, "distance")
-    members: dict[int, list[int]] = {}
-    for index, label in enumerate(labels.tolist()):
-        members.setdefault(label, []).append(index)
-    return sorted(tuple(group) for group in members.values())
+    return sorted(tuple(np.flatnonzero(labels == k).tolist()) for k in np.unique(labels))
 
 
 def _joined(
@@ -133,13 +131,7 @@ def _joined(
     fusion: FusionConfig,
 ) -> list[Group]:
     """Joins groups across lines that most views look through."""
-    parent = list(range(len(groups)))
-
-    def root(index: int) -> int:
-        while parent[index] != index:
-            index = parent[index]
-        return index
-
+    joined = np.zeros((len(groups), len(groups)), dtype=bool)
     for (one, other), points in sorted(_borders(territories, fusion.cell_ch).items()):
         seeing = views.pick((*groups[one], *groups[other]))
         through, ending = passing_votes(
@@ -154,11 +146,12 @@ def _joined(
         middle = points[passing].mean(axis=0)
         width = min(_width(territories, k, middle, length, fusion.cell_ch) for k in (one, other))
         if length > config.neck_ratio * width:
-            parent[root(max(one, other))] = root(min(one, other))
-    members: dict[int, list[int]] = {}
-    for index, group in enumerate(groups):
-        members.setdefault(root(index), []).extend(group)
-    return [tuple(sorted(group)) for group in members.values()]
+            joined[one, other] = True
+    count, part = connected_components(joined, directed=False)
+    return [
+        tuple(sorted(view for k in np.flatnonzero(part == n).tolist() for view in groups[k]))
+        for n in range(count)
+    ]
 
 
 def _borders(territories: Territories, cell: float) -> dict[tuple[int, int], FloatArray]:

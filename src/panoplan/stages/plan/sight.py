@@ -7,12 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from panoplan.geometry.polar import range_profile
+from panoplan.geometry.polar import PROFILE_BINS, range_profile
 from panoplan.types.arrays import FloatArray
 from panoplan.types.view import RegisteredLayout, picked
-
-_BINS = 1024
-_MAX_GAP_RAD = np.deg2rad(2.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,14 +49,14 @@ def sights(views: Sequence[RegisteredLayout]) -> Sights:
     Returns:
         The regions, in the same order.
     """
-    profiles = np.empty((len(views), _BINS))
-    sigmas = np.empty((len(views), _BINS))
+    profiles = np.empty((len(views), PROFILE_BINS))
+    sigmas = np.empty((len(views), PROFILE_BINS))
     cameras = np.empty((len(views), 2))
-    at = 2 * np.pi * (np.arange(_BINS) + 0.5) / _BINS - np.pi
+    at = 2 * np.pi * (np.arange(PROFILE_BINS) + 0.5) / PROFILE_BINS - np.pi
     for k, view in enumerate(views):
         cameras[k] = view.camera
         offsets = view.boundary - view.camera
-        profiles[k] = range_profile(offsets, _BINS, _MAX_GAP_RAD)
+        profiles[k] = range_profile(offsets)
         known = np.flatnonzero(np.isfinite(offsets[:, 0]))
         heading = np.arctan2(offsets[known, 0], offsets[known, 1])
         order = np.argsort(heading, kind="stable")
