@@ -1045,6 +1045,94 @@ class AperturesConfig:
 
 
 @dataclass(frozen=True)
+class TourConfig:
+    """Joining sparse photos into one frame."""
+
+    max_features: int = _setting(
+        8192, "Most features an image, the largest first.", low=64, high=100_000
+    )
+    first_octave: int = _setting(
+        -1,
+        "Octave in which features begin: −1 doubles the image. Photos metres apart share few "
+        "features, and many of these are small.",
+        low=-1,
+        high=3,
+    )
+    peak_threshold: float = _setting(0.003, "Least contrast of a feature, of 1.", low=0.0, high=1.0)
+    lowest_elevation_deg: float = _setting(
+        -60.0,
+        "Below it no features: there is the tripod, the photographer, or floor so near that no "
+        "photo metres away sees it alike.",
+        unit="deg",
+        low=-90.0,
+        high=0.0,
+    )
+    highest_elevation_deg: float = _setting(
+        75.0,
+        "Above it no features: an equirectangular image is smeared there.",
+        unit="deg",
+        low=0.0,
+        high=90.0,
+    )
+    horizon_deg: float = _setting(
+        1.5,
+        "Features nearer the horizon than this are left out: their height above or below the "
+        "cameras, which the direction to another camera is told by, is not known.",
+        unit="deg",
+        low=0.1,
+        high=30.0,
+    )
+    max_ratio: float = _setting(
+        0.9,
+        "Matches are mutual nearest neighbours nearer than this share of the second one.",
+        low=0.0,
+        high=1.0,
+    )
+    match_cell_deg: float = _setting(
+        1.2,
+        "One match a cell of this side, in both images: a texture must not outvote the room.",
+        unit="deg",
+        low=0.0,
+        high=30.0,
+    )
+    max_matches: int = _setting(450, "Most matches of two photos.", low=8, high=10_000)
+    match_sigma_deg: float = _setting(
+        0.3,
+        "Standard deviation of an angle of a match, with what cameras are tilted and differ in "
+        "height.",
+        unit="deg",
+        low=0.01,
+        high=5.0,
+    )
+    yaw_step_deg: float = _setting(
+        1.5, "Yaws of the vote, one such step apart.", unit="deg", low=0.5, high=10.0
+    )
+    direction_step_deg: float = _setting(
+        3.0, "Directions of the vote, one such step apart.", unit="deg", low=0.5, high=20.0
+    )
+    vote_share: float = _setting(
+        0.1, "Share of inliers that the vote reckons with.", low=0.001, high=0.9
+    )
+    evidence_cell_deg: float = _setting(
+        12.0,
+        "Matches of one cell of this side are not independent: a poster or a chandelier must not "
+        "decide.",
+        unit="deg",
+        low=1.0,
+        high=90.0,
+    )
+    evidence_cap: float = _setting(
+        6.0, "Most evidence of such a cell.", unit="nats", low=0.1, high=100.0
+    )
+    hypotheses: int = _setting(
+        5, "Yaws with directions that are kept of two photos.", low=1, high=100
+    )
+    apart_deg: float = _setting(
+        8.0, "Hypotheses nearer one another than this are one.", unit="deg", low=0.1, high=90.0
+    )
+
+
+@dataclass(frozen=True)
 class Config:
     """All settings of a run."""
 
@@ -1063,6 +1151,7 @@ class Config:
     adjust: AdjustConfig = field(default_factory=AdjustConfig)
     partition: PartitionConfig = field(default_factory=PartitionConfig)
     apertures: AperturesConfig = field(default_factory=AperturesConfig)
+    tour: TourConfig = field(default_factory=TourConfig)
 
     def __post_init__(self) -> None:
         """Checks every field's type and range."""

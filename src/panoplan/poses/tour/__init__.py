@@ -1,0 +1,1 @@
+"""Sparse photo tours: stills metres apart are joined into one frame."""
