@@ -1,24 +1,32 @@
 import math
+import os
 from operator import itemgetter
 
 import pytest
 
 from panoplan.bench import accuracy
-from panoplan.bench.parallel import mapped
+from panoplan.bench.parallel import WorkerLostError, mapped, processes
 from panoplan.config import preset
 
 
 @pytest.mark.parametrize("jobs", [1, 3])
 def test_results_come_in_the_order_of_the_work(jobs):
     told = []
-    results = mapped(math.factorial, [5, 900, 3, 0], jobs, lambda *done: told.append(done))
+    results = mapped(
+        math.factorial, [5, 900, 3, 0], processes(jobs), lambda *done: told.append(done)
+    )
     assert results == [120, math.factorial(900), 6, 1]
     assert told == [(1, 4), (2, 4), (3, 4), (4, 4)]
 
 
 def test_a_failure_in_another_process_is_raised_here():
     with pytest.raises(IndexError):
-        mapped(itemgetter(2), [[1, 2, 3], [1]], 2, lambda *_: None)
+        mapped(itemgetter(2), [[1, 2, 3], [1]], processes(2), lambda *_: None)
+
+
+def test_a_process_that_dies_is_told():
+    with pytest.raises(WorkerLostError, match="the same command goes on"):
+        mapped(os._exit, [1, 1], processes(2), lambda *_: None)
 
 
 def test_figures_do_not_depend_on_the_number_of_processes():

@@ -8,7 +8,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from panoplan.bench.parallel import mapped
+from panoplan.bench.parallel import mapped, processes
 from panoplan.config import Config
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
@@ -40,7 +40,7 @@ def measure(
         those of each flat.
     """
     work = [(grade, seed) for grade in GRADES for seed in seeds]
-    rows = mapped(partial(_scene, config=config, metric=metric), work, jobs, progress)
+    rows = mapped(partial(_scene, config=config, metric=metric), work, processes(jobs), progress)
     result: dict[str, Any] = {"metric": metric}
     for grade in GRADES:
         scenes = [row for (of, _), row in zip(work, rows, strict=True) if of == grade]

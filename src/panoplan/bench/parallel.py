@@ -3,18 +3,70 @@
 from __future__ import annotations
 
 import multiprocessing
-from collections.abc import Callable, Sequence
-from concurrent.futures import ProcessPoolExecutor
-from typing import TypeVar
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from typing import Protocol, TypeVar
+
+from panoplan.errors import PanoplanError
 
 Work = TypeVar("Work")
 Result = TypeVar("Result")
 
 
+class Workers(Protocol):
+    """What does independent pieces of work somewhere."""
+
+    def __call__(
+        self, function: Callable[[Work], Result], work: Sequence[Work], /
+    ) -> Iterator[tuple[int, Result]]:
+        """Place in the work and result of each piece, as they are done."""
+
+
+class WorkerLostError(PanoplanError):
+    """A process that did some of the work is gone."""
+
+
+def processes(jobs: int) -> Workers:
+    """Workers on this machine.
+
+    Args:
+        jobs: processes, ≥ 1; 1 for this one.
+
+    Returns:
+        The workers. They begin the work in its order. Where a process dies they raise
+        WorkerLostError.
+    """
+
+    def finished(
+        function: Callable[[Work], Result], work: Sequence[Work], /
+    ) -> Iterator[tuple[int, Result]]:
+        if jobs == 1 or len(work) < 2:
+            for number, item in enumerate(work):
+                yield number, function(item)
+            return
+        # Fresh processes: forked ones would inherit the threads of the progress display.
+        context = multiprocessing.get_context("spawn")
+        with ProcessPoolExecutor(min(jobs, len(work)), mp_context=context) as pool:
+            place = {pool.submit(function, item): number for number, item in enumerate(work)}
+            try:
+                for future in as_completed(place):
+                    yield place[future], future.result()
+            except BrokenProcessPool:
+                raise WorkerLostError(
+                    "a process of the benchmark died, as it does when memory is short; what was "
+                    "done is kept: the same command goes on"
+                ) from None
+            finally:
+                pool.shutdown(wait=False, cancel_futures=True)
+
+    return finished
+
+
 def mapped(
     function: Callable[[Work], Result],
     work: Sequence[Work],
-    jobs: int,
+    workers: Workers,
     progress: Callable[[int, int], None],
 ) -> list[Result]:
     """The results of a function, in the order of the work.
@@ -22,19 +74,11 @@ def mapped(
     Args:
         function: picklable; does not depend on what was done before.
         work: its arguments.
-        jobs: processes, ≥ 1; 1 for this one.
+        workers: do it.
         progress: called with (done, in all).
     """
-    results: list[Result] = []
-    if jobs == 1 or len(work) < 2:
-        for number, item in enumerate(work):
-            results.append(function(item))
-            progress(number + 1, len(work))
-        return results
-    # Fresh processes: forked ones would inherit the threads of the progress display.
-    context = multiprocessing.get_context("spawn")
-    with ProcessPoolExecutor(min(jobs, len(work)), mp_context=context) as pool:
-        for number, result in enumerate(pool.map(function, work)):
-            results.append(result)
-            progress(number + 1, len(work))
-    return results
+    results: dict[int, Result] = {}
+    for number, result in workers(function, work):
+        results[number] = result
+        progress(len(results), len(work))
+    return [results[number] for number in range(len(work))]

@@ -7,7 +7,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from panoplan.cli import settings
+from panoplan.cli import bench_v1, settings
 from panoplan.cli.progress import progress
 from panoplan.errors import InputError
 from panoplan.formats.atomic import write_text
@@ -18,29 +18,35 @@ def add_parser(commands: Any) -> None:
     parser = commands.add_parser(
         "bench",
         help="accuracy and runtime, and tables of them",
-        description="accuracy: on simulated flats. home: on a scene with known truth. runtime: "
-        "time and memory on a long walk. table: writes what they measured into a page.",
-        epilog="example: panoplan bench accuracy --flats 20 --jobs 2 -o accuracy.json",
+        description="v1: the paper's tables on simulated buildings. accuracy: on simulated flats. "
+        "home: on a scene with known truth. runtime: time and memory on a long walk. table: writes "
+        "what they measured into a page.",
+        epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
-    parser.add_argument("what", choices=["accuracy", "home", "runtime", "table"])
+    parser.add_argument("what", choices=["v1", "accuracy", "home", "runtime", "table"])
     parser.add_argument("input", nargs="?", type=Path, help="home: the scene; table: the page")
     parser.add_argument("--flats", type=int, default=20, metavar="N", help="seeds 0 to N-1 a grade")
     parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
-    parser.add_argument("--jobs", type=_jobs, default=1, metavar="N", help="accuracy: processes")
+    parser.add_argument(
+        "--jobs", type=_jobs, default=1, metavar="N", help="v1, accuracy: processes"
+    )
     parser.add_argument(
         "--results",
         type=Path,
         default=Path("benchmarks"),
         help="table: folder of the files measured (default: benchmarks)",
     )
-    parser.add_argument("-o", "--output", type=Path, help="JSON file (default: stdout)")
+    parser.add_argument("-o", "--output", type=Path, help="JSON file (default: stdout); v1: folder")
     parser.add_argument("--quiet", action="store_true", help="no progress")
+    bench_v1.add_arguments(parser)
     settings.add_arguments(parser)
     parser.set_defaults(act=act)
 
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
+    if options.what == "v1":
+        return bench_v1.act(options)
     from panoplan.bench import accuracy, home, runtime, table
     from panoplan.bench.record import record
 

@@ -1,0 +1,167 @@
+"""Where the benchmark's scenes come from: simulated buildings, or folders of a dataset."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import Protocol
+
+import panoplan
+from panoplan.datasets.detect import open_scene, read_truth
+from panoplan.datasets.mp3d_fpe import version_folder
+from panoplan.errors import InputError
+from panoplan.simulate.scene import SimulatedScene, simulate_flat
+from panoplan.types.keyframe import Keyframe
+from panoplan.types.truth import GroundTruth
+
+FAMILIES = ("flat",)
+REPORTED_SEEDS = range(25, 50)
+
+
+@dataclass(frozen=True, eq=False)
+class Recording:
+    """One walk, and its truth for the scores.
+
+    Attributes:
+        keyframes: in the order of the walk.
+        truth: true plan and poses.
+        camera_height_m: of the median camera, None where unknown.
+        true_ch_per_su: true scale in heights of the first camera, None where unknown.
+    """
+
+    keyframes: tuple[Keyframe, ...]
+    truth: GroundTruth
+    camera_height_m: float | None
+    true_ch_per_su: float | None
+
+    @property
+    def bare(self) -> Recording:
+        """Without the layouts."""
+        return replace(self, keyframes=tuple(replace(k, layout=None) for k in self.keyframes))
+
+
+class Source(Protocol):
+    """A scene that can be had, here or on another machine."""
+
+    @property
+    def name(self) -> str:
+        """Unique in a run; a file's name."""
+
+    def key(self) -> str:
+        """A hash of all that the recording depends on."""
+
+    def open(self) -> Recording:
+        """The recording."""
+
+
+@dataclass(frozen=True)
+class Simulated:
+    """A made-up building.
+
+    Attributes:
+        family: kind of building.
+        seed: which one.
+    """
+
+    family: str
+    seed: int
+
+    @property
+    def name(self) -> str:
+        """Family and seed."""
+        return f"{self.family}-{self.seed:03d}"
+
+    def key(self) -> str:
+        """Of what it is and of the code that makes it."""
+        return _hash(repr(self), code_version("simulate", "geometry", "types"))
+
+    def open(self) -> Recording:
+        """Makes the building and walks through it."""
+        return recorded(simulate_flat(self.seed, "hard"))
+
+
+def recorded(scene: SimulatedScene) -> Recording:
+    """What the benchmark takes of a simulated scene.
+
+    Args:
+        scene: the scene.
+
+    Returns:
+        Its keyframes and truth. The method's unit of length is the height of the first camera, bob
+        included, and so is that of the true scale.
+    """
+    assert scene.truth.trajectory is not None
+    first_m = scene.camera_height_m - float(scene.truth.trajectory.translations[0, 1])
+    return Recording(
+        scene.keyframes, scene.truth, scene.camera_height_m, scene.metres_per_su / first_m
+    )
+
+
+@dataclass(frozen=True)
+class Folder:
+    """A scene of a dataset.
+
+    Attributes:
+        path: one version of an MP3D-FPE scene.
+    """
+
+    path: Path
+
+    @property
+    def name(self) -> str:
+        """Scene and version."""
+        return f"{self.path.parent.name}_{self.path.name}"
+
+    def key(self) -> str:
+        """Of the bytes of its poses, layouts and truth."""
+        files = [*self.path.glob("*.json"), *self.path.glob("*.txt"), *self.path.glob("vo*/**/*.*")]
+        digest = hashlib.sha256()
+        for file in sorted(path for path in files if path.is_file()):
+            digest.update(str(file.relative_to(self.path)).encode() + b"\0")
+            digest.update(file.read_bytes())
+        return digest.hexdigest()
+
+    def open(self) -> Recording:
+        """Reads it; raises as the readers do."""
+        scene = open_scene(self.path)
+        return Recording(scene.keyframes, read_truth(self.path), scene.camera_height_m, None)
+
+
+def mp3d_fpe_scenes(root: Path) -> list[Folder]:
+    """All versions of all scenes of the dataset.
+
+    Args:
+        root: folder of the dataset, `<root>/<scene>/<version>`.
+
+    Raises:
+        InputError: no such folder, or no scene in it.
+    """
+    if not root.is_dir():
+        raise InputError(root, "no folder", "the root of MP3D-FPE: <root>/<scene>/<version>")
+    versions = (path for path in sorted(root.glob("*/*")) if path.is_dir())
+    found = [Folder(path.resolve()) for path in versions if version_folder(path) == path]
+    if not found:
+        raise InputError(root, "no scene", "<root>/<scene>/<version>/vo*/keyframe_list.txt")
+    return found
+
+
+@cache
+def code_version(*parts: str) -> str:
+    """A hash of the source of some of panoplan's packages or modules.
+
+    Args:
+        parts: their names, without "panoplan.".
+    """
+    root = Path(panoplan.__file__).parent
+    digest = hashlib.sha256()
+    for part in parts:
+        files = [root / f"{part}.py"] if (root / f"{part}.py").is_file() else []
+        for file in sorted([*files, *(root / part).rglob("*.py")]):
+            digest.update(str(file.relative_to(root)).encode() + b"\0" + file.read_bytes())
+    return digest.hexdigest()
+
+
+def _hash(*parts: str) -> str:
+    return hashlib.sha256("\0".join(parts).encode()).hexdigest()
