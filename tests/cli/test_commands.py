@@ -9,6 +9,7 @@ import pytest
 from tests.scenes import RECTANGLE, walk
 
 from panoplan.cli.main import main
+from panoplan.datasets.detect import read_truth
 from panoplan.formats.plan_json import read_plan
 from panoplan.formats.sequence import write_sequence
 from panoplan.types.layout import Layout
@@ -62,6 +63,30 @@ def test_simulate_makes_what_run_reads(tmp_path, capsys):
     flat = tmp_path / "flat"
     assert main(["simulate", "-o", str(flat), "--seed", "3", "--rooms", "5", "--stills"]) == 0
     assert main(["run", str(flat), "-o", str(tmp_path / "plan"), "--quiet"]) == 0
+
+
+def test_simulate_makes_scenes_of_a_family(tmp_path, capsys):
+    words = ["simulate", "--family", "flat", "--seed", "7", "--scenes", "2", "--stills", "--quiet"]
+    assert main([*words, "-o", str(tmp_path / "scenes")]) == 0
+    folders = sorted((tmp_path / "scenes").iterdir())
+    assert [folder.name[:9] for folder in folders] == ["flat_0007", "flat_0008"]
+    assert all(len(read_truth(folder).plan.rooms) >= 3 for folder in folders)
+    assert main([*words, "-o", str(tmp_path / "mp3d"), "--format", "mp3d-fpe"]) == 0
+    assert all(read_truth(folder).trajectory for folder in (tmp_path / "mp3d").iterdir())
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--family", "flat", "--rooms", "5"], "one of them"),
+        (["--scenes", "0"], "1 to"),
+        (["--family", "flat", "--seed", "-1"], "0 or more"),
+    ],
+)
+def test_simulate_refuses_what_it_cannot_make(tmp_path, capsys, words, told):
+    assert main(["simulate", "-o", str(tmp_path / "out"), "--quiet", *words]) == 2
+    assert told in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
 
 
 def test_version_and_help(capsys):

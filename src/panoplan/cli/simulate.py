@@ -1,63 +1,97 @@
-"""panoplan simulate: a made-up flat, walked through."""
+"""panoplan simulate: made-up buildings, walked through."""
 
 from __future__ import annotations
 
 import argparse
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from panoplan.cli.progress import progress
 from panoplan.errors import InputError
+
+if TYPE_CHECKING:
+    from panoplan.simulate.scene import SimulatedScene
+
+_MOST_SCENES = 10_000
 
 
 def add_parser(commands: Any) -> None:
     """Adds the command."""
     parser = commands.add_parser(
         "simulate",
-        help="a made-up flat with its walk, layouts and truth",
-        description="Makes a flat, walks through it and writes what odometry and a layout network "
-        "would give, with their errors, and the truth.",
-        epilog="example: panoplan simulate -o flat/ --seed 7 --grade hard",
+        help="made-up buildings with their walks, layouts and truth",
+        description="Makes buildings, walks through them and writes what odometry and a layout "
+        "network would give, with their errors, and the truth.",
+        epilog="example: panoplan simulate -o scenes/ --family mp3d-fpe --scenes 5 --grade hard",
     )
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
-    parser.add_argument("--seed", type=int, default=0, help="of the flat and its walk (default: 0)")
+    parser.add_argument(
+        "--family",
+        choices=["mp3d-fpe", "flat"],
+        help="large houses, or flats of a real size (default: a plain flat of few kinds of rooms)",
+    )
+    parser.add_argument("--seed", type=int, default=0, help="of building and walk (default: 0)")
+    parser.add_argument(
+        "--scenes", type=int, metavar="K", help="seeds from --seed on, a folder each in the output"
+    )
     parser.add_argument("--grade", choices=["exact", "mild", "hard"], default="mild")
     parser.add_argument("--stills", action="store_true", help="sparse photos instead of a walk")
     parser.add_argument(
-        "--rooms", type=int, choices=range(5, 10), metavar="5-9", help="rooms (default: drawn)"
+        "--rooms", type=int, choices=range(5, 10), metavar="5-9", help="rooms of a plain flat"
     )
-    parser.add_argument("--step", type=float, default=0.4, metavar="M", help="metres a keyframe")
+    parser.add_argument(
+        "--step", type=float, default=0.4, metavar="M", help="metres a keyframe of a plain flat"
+    )
     parser.add_argument(
         "--format", choices=["sequence", "mp3d-fpe"], default="sequence", help="kind of folder"
     )
+    parser.add_argument("--quiet", action="store_true", help="no progress")
     parser.set_defaults(act=act)
 
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
-    from panoplan.formats.mp3d_fpe import write_mp3d_fpe
-    from panoplan.formats.sequence import write_sequence
-    from panoplan.simulate.scene import simulate_flat
-
     if not 0.05 <= options.step <= 5:
         raise InputError("--step", f"{options.step:g}", "0.05 to 5 metres")
+    if options.scenes is not None and not 1 <= options.scenes <= _MOST_SCENES:
+        raise InputError("--scenes", str(options.scenes), f"1 to {_MOST_SCENES}")
+    if options.family is not None and options.rooms is not None:
+        raise InputError("--rooms", "with --family", "one of them: a family draws its rooms")
     if options.output.exists() and (not options.output.is_dir() or any(options.output.iterdir())):
         raise InputError(options.output, "something there", "a new or an empty folder")
-    scene = simulate_flat(
-        options.seed,
-        options.grade,
-        stills=options.stills,
-        rooms=options.rooms,
-        step_m=options.step,
-    )
-    if options.format == "sequence":
-        write_sequence(
-            options.output, scene.name, scene.keyframes, scene.truth, scene.camera_height_m
-        )
-    else:
-        numbered = [replace(k, id=str(n + 1)) for n, k in enumerate(scene.keyframes)]
-        write_mp3d_fpe(options.output, numbered, scene.truth)
-    print(
-        f"{len(scene.truth.plan.rooms)} rooms, {len(scene.keyframes)} keyframes: {options.output}"
-    )
+    count = options.scenes or 1
+    told = []
+    with progress("simulate", quiet=options.quiet) as report:
+        for number in range(count):
+            scene = _scene(options, options.seed + number)
+            folder = options.output if options.scenes is None else options.output / scene.name
+            _write(scene, folder, options)
+            told.append(
+                f"{len(scene.truth.plan.rooms)} rooms, {len(scene.keyframes)} keyframes: {folder}"
+            )
+            report(number + 1, count)
+    print("\n".join(told))
     return 0
+
+
+def _scene(options: argparse.Namespace, seed: int) -> SimulatedScene:
+    from panoplan.simulate.families import simulate_scene
+    from panoplan.simulate.scene import simulate_flat
+
+    if options.family is not None:
+        return simulate_scene(options.family, seed, options.grade, stills=options.stills)
+    return simulate_flat(
+        seed, options.grade, stills=options.stills, rooms=options.rooms, step_m=options.step
+    )
+
+
+def _write(scene: SimulatedScene, folder: Path, options: argparse.Namespace) -> None:
+    from panoplan.formats.mp3d_fpe import write_mp3d_fpe
+    from panoplan.formats.sequence import write_sequence
+
+    if options.format == "sequence":
+        write_sequence(folder, scene.name, scene.keyframes, scene.truth, scene.camera_height_m)
+        return
+    numbered = [replace(k, id=str(n + 1)) for n, k in enumerate(scene.keyframes)]
+    write_mp3d_fpe(folder if options.scenes is None else folder / "0", numbered, scene.truth)

@@ -31,11 +31,13 @@ class InteriorRoom:
         label: what it is called.
         polygon: (N, 2) interior faces of its walls, open, counter-clockwise in (x, z), metres.
         ceiling_height_m: floor to ceiling.
+        holes: (M, 2) open rings, clockwise, of what stands free in it, such as pillars.
     """
 
     label: str
     polygon: FloatArray
     ceiling_height_m: float = 2.5
+    holes: tuple[FloatArray, ...] = ()
 
     def __post_init__(self) -> None:
         """Copies, checks and turns the polygon counter-clockwise."""
@@ -45,10 +47,22 @@ class InteriorRoom:
                 f"room {self.label}", "a polygon that crosses itself", "a simple polygon"
             )
         object.__setattr__(self, "polygon", frozen_array("polygon", polygon, (None, 2)))
+        rings = (counter_clockwise(frozen_array("hole", h, (None, 2)))[::-1] for h in self.holes)
+        object.__setattr__(self, "holes", tuple(frozen_array("hole", r, (None, 2)) for r in rings))
+
+    @property
+    def floor(self) -> shapely.Polygon:
+        """The floor without what stands on it."""
+        return shapely.Polygon(self.polygon, self.holes)
+
+    @property
+    def rings(self) -> tuple[FloatArray, ...]:
+        """Its walls' faces and those of what stands free, the room on the left of each."""
+        return (self.polygon, *self.holes)
 
     @property
     def area(self) -> float:
-        """Floor area in m²."""
+        """Floor area in m², pillars not deducted."""
         return signed_area(self.polygon)
 
 
@@ -175,7 +189,14 @@ class Building:
         rotation = np.array([[c, -s], [s, c]])
         return replace(
             self,
-            rooms=tuple(replace(r, polygon=r.polygon @ rotation.T + shift) for r in self.rooms),
+            rooms=tuple(
+                replace(
+                    r,
+                    polygon=r.polygon @ rotation.T + shift,
+                    holes=tuple(hole @ rotation.T + shift for hole in r.holes),
+                )
+                for r in self.rooms
+            ),
             passages=tuple(replace(p, faces=p.faces @ rotation.T + shift) for p in self.passages),
             windows=tuple(replace(w, segment=w.segment @ rotation.T + shift) for w in self.windows),
         )
@@ -272,7 +293,7 @@ def building_from_rooms(
     rng = np.random.default_rng(seed)
     walls = shared_walls([r.polygon for r in rooms], max_thickness_m)
     passages = _passages(rooms, walls, rng, opening_share, extra_doors)
-    building = Building(name, tuple(rooms), passages, _windows(rooms, walls, rng))
+    building = Building(name, tuple(rooms), passages, outer_windows(rooms, walls, rng))
     if len(building.reachable()) < len(rooms):
         raise InputError(name, "rooms no door can lead to", "rooms that share long enough walls")
     return building
@@ -644,10 +665,16 @@ def _passage(wall: SharedWall, rng: np.random.Generator, opening_share: float) -
     return Passage(kind, wall.rooms, wall.faces(start, start + width))
 
 
-def _windows(
+def outer_windows(
     rooms: Sequence[InteriorRoom], walls: Sequence[SharedWall], rng: np.random.Generator
 ) -> tuple[Window, ...]:
-    """A window in most of the longer walls that face no other room."""
+    """A window in most of the longer walls that face no other room.
+
+    Args:
+        rooms: of one storey.
+        walls: between them.
+        rng: of all choices.
+    """
     areas = [shapely.Polygon(r.polygon) for r in rooms]
     windows = []
     for k, room in enumerate(rooms):

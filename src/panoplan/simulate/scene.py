@@ -217,7 +217,7 @@ def true_plan(building: Building, camera_height_m: float | None = None) -> TrueP
         The plan.
     """
     rooms = tuple(
-        TrueRoom(f"room_{k + 1:02d}", room.label, room.polygon)
+        TrueRoom(f"room_{k + 1:02d}", room.label, room.polygon, room.holes)
         for k, room in enumerate(building.rooms)
     )
     longest = max(

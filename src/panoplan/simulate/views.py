@@ -317,7 +317,11 @@ def _label(surface: Surface, count: int) -> NDArray[np.int8]:
 
 def _room_faces(building: Building, room: int) -> _Faces:
     """The walls of a room, split where doors, openings and windows begin and end."""
-    polygon = building.rooms[room].polygon
+    walls = [
+        pair
+        for ring in building.rooms[room].rings
+        for pair in zip(ring, np.roll(ring, -1, axis=0), strict=True)
+    ]
     marks = [
         (p.faces[p.side(room)], _surface(p.kind), k)
         for k, p in enumerate(building.passages)
@@ -328,7 +332,7 @@ def _room_faces(building: Building, room: int) -> _Faces:
     b: list[FloatArray] = []
     surfaces: list[int] = []
     passages: list[int] = []
-    for start, end in zip(polygon, np.roll(polygon, -1, axis=0), strict=True):
+    for start, end in walls:
         length = float(np.hypot(*(end - start)))
         along = (end - start) / length
         spans = []

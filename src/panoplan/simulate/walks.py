@@ -8,6 +8,7 @@ from itertools import pairwise
 import numpy as np
 import shapely
 from scipy.ndimage import gaussian_filter1d
+from shapely.geometry.polygon import orient
 
 from panoplan.errors import InputError
 from panoplan.simulate.buildings import Building, Passage
@@ -145,18 +146,28 @@ def locate(building: Building, positions: FloatArray, headings: FloatArray) -> I
         ahead = np.sin(headings) * passage.outward[0] + np.cos(headings) * passage.outward[1] >= 0
         found[inside] = np.array(passage.rooms)[ahead[inside].astype(np.int64)]
     for k, room in enumerate(building.rooms):
-        found[shapely.intersects_xy(shapely.Polygon(room.polygon), x, z)] = k
+        found[shapely.intersects_xy(room.floor, x, z)] = k
     if (found < 0).any():
         lost = positions[found < 0][0]
         raise InputError("camera", f"({lost[0]:.3f}, {lost[1]:.3f})", "a place inside a room")
     return found
 
 
+def can_be_walked(building: Building) -> bool:
+    """Whether a person can stand in every room and reach all its doors."""
+    try:
+        for k in range(len(building.rooms)):
+            _Footing(building, k)
+    except InputError:
+        return False
+    return True
+
+
 class _Footing:
     """The floor of one room where one may walk, and the shortest ways over it."""
 
     def __init__(self, building: Building, room: int) -> None:
-        self.outline = shapely.Polygon(building.rooms[room].polygon)
+        self.outline = building.rooms[room].floor
         self.thresholds: dict[int, FloatArray] = {}
         passages = [(k, building.passages[k]) for k, _ in building.neighbours(room)]
         for clearance in _CLEARANCES_M:
@@ -169,10 +180,8 @@ class _Footing:
                     break
         else:
             raise InputError(f"room {room}", "too narrow to walk in", "0.2 m and reachable doors")
-        ring = np.asarray(floor.exterior.coords)[:-1]
-        ring = ring if floor.exterior.is_ccw else ring[::-1]
-        before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
-        self.bends = ring[before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0]
+        floor = orient(floor)
+        self.bends = np.vstack([_bends(ring) for ring in (floor.exterior, *floor.interiors)])
 
     def way(self, start: FloatArray, end: FloatArray) -> list[FloatArray]:
         """The shortest way from start to end over the walkable floor, without its start."""
@@ -197,6 +206,13 @@ class _Footing:
 
     def _free(self, a: FloatArray, b: FloatArray) -> bool:
         return bool(self.floor.covers(shapely.LineString([a, b])))
+
+
+def _bends(ring: shapely.LinearRing) -> FloatArray:
+    """(N, 2) the corners of a ring, the floor on its left, where the floor is concave."""
+    points = np.asarray(ring.coords)[:-1]
+    before, after = points - np.roll(points, 1, axis=0), np.roll(points, -1, axis=0) - points
+    return np.asarray(points[before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0])
 
 
 def _threshold(passage: Passage, side: int, distance: float) -> FloatArray:
