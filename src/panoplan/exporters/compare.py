@@ -18,13 +18,13 @@ from panoplan.exporters.drawing import (
     footer_left,
     outline_path,
     plan_text,
-    room_area,
     room_colours,
     room_outlines,
 )
 from panoplan.exporters.labels import width_em
 from panoplan.exporters.layers import add_layer
 from panoplan.exporters.pictures import write_picture
+from panoplan.exporters.storeys import room_area
 from panoplan.metrics.alignment import Freedom, transformed
 from panoplan.metrics.report import Report, RoomsKind, evaluate
 from panoplan.types.arrays import FloatArray

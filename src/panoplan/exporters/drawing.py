@@ -17,7 +17,7 @@ from panoplan.exporters.labels import (
     room_label,
     width_em,
 )
-from panoplan.metrics.rooms import region
+from panoplan.exporters.storeys import room_area
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import FloorPlan, Room, Unit
 
@@ -117,11 +117,6 @@ def room_colours(rooms: Sequence[Room]) -> dict[str, str]:
         turns = [ROOM_COLOURS[(k + step) % len(ROOM_COLOURS)] for step in range(len(ROOM_COLOURS))]
         found[room.id] = next((colour for colour in turns if colour not in near), turns[0])
     return found
-
-
-def room_area(room: Room) -> Any:
-    """The shapely area of a room that has a polygon."""
-    return region(np.empty((0, 2)) if room.polygon is None else room.polygon, room.holes)
 
 
 def draw_plan(

@@ -58,6 +58,7 @@ def read_plan(path: Path) -> FloorPlan:
             that is not finite.
     """
     data = read_json(path)
+    _refuse_newer(data, path)
     _validate(data, path)
     where = _not_finite(data, "$")
     if where is not None:
@@ -281,6 +282,13 @@ def _validator() -> Any:
 
     text = resources.files("panoplan.formats").joinpath("plan.schema.json").read_text("utf-8")
     return Draft202012Validator(json.loads(text))
+
+
+def _refuse_newer(data: Any, path: Path) -> None:
+    version = data.get("schema") if isinstance(data, dict) else None
+    if isinstance(version, int) and version > SCHEMA:
+        expected = f"a plan of schema {SCHEMA}: a newer panoplan reads it"
+        raise InputError(f"{path}, $.schema", f"schema {str(version)[:20]}", expected)
 
 
 def _validate(data: Any, path: Path) -> None:

@@ -1,0 +1,175 @@
+"""A plan as DXF: metres, AIA layers, closed rooms, real dimensions."""
+
+from __future__ import annotations
+
+import io
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import shapely
+
+from panoplan.errors import MissingExtraError
+from panoplan.exporters.labels import label_place, printable
+from panoplan.exporters.sheet.dimensions import wall_length
+from panoplan.exporters.storeys import (
+    Storey,
+    aperture_area,
+    by_faces,
+    inner_walls,
+    metric_storeys,
+    room_area,
+    through,
+)
+from panoplan.types.plan import Aperture, FloorPlan, Room
+
+if TYPE_CHECKING:
+    from ezdxf.document import Drawing
+
+LAYERS = {
+    "A-WALL": 7,
+    "A-WALL-PATT": 8,
+    "A-DOOR": 30,
+    "A-FLOR-OPNG": 9,
+    "A-GLAZ": 5,
+    "A-AREA": 3,
+    "A-AREA-IDEN": 7,
+    "A-ANNO-DIMS": 8,
+}
+"""Layers by the AIA CAD layer guidelines and their colours (AutoCAD colour index)."""
+
+_METRES = 6
+_BY_LAYER = 256
+_DIMENSION_STYLE = "PANOPLAN"
+_DIMENSION_OFFSET_M = 0.15
+_TEXT_M = 0.10
+_SYMBOL_M = 0.05
+
+
+def plan_dxf(plan: FloorPlan) -> bytes:
+    """A plan as DXF R2018 in metres, in the plan frame; the same plan gives the same bytes.
+
+    Each room is a closed LWPOLYLINE (holes too) on A-AREA with its name and area on A-AREA-IDEN,
+    each wall face a LINE on A-WALL with an aligned DIMENSION, the bodies of shared walls a HATCH
+    on A-WALL-PATT, doors, openings and windows closed LWPOLYLINEs through their wall. A plan of
+    several storeys has a set of layers for each, ending in -L0, -L1.
+
+    Raises:
+        InputError: not metric or without rooms; MissingExtraError: ezdxf is not installed.
+    """
+    try:
+        import ezdxf
+    except ImportError:
+        raise MissingExtraError("DXF", "ezdxf", "export") from None
+
+    floors = metric_storeys(plan)
+    with _reproducible():
+        document = ezdxf.new("R2018", units=_METRES)
+        _dimension_style(document)
+        for floor in floors:
+            _draw(document, floor, "" if len(floors) == 1 else f"-L{floor.level}")
+        stream = io.StringIO()
+        document.write(stream)
+    return stream.getvalue().encode("utf-8")
+
+
+@contextmanager
+def _reproducible() -> Iterator[None]:
+    """Keeps clocks and random ids out of the file."""
+    import ezdxf
+
+    before = ezdxf.options.write_fixed_meta_data_for_testing
+    ezdxf.options.write_fixed_meta_data_for_testing = True
+    try:
+        yield
+    finally:
+        ezdxf.options.write_fixed_meta_data_for_testing = before
+
+
+def _dimension_style(document: Drawing) -> None:
+    style: Any = document.dimstyles.new(_DIMENSION_STYLE)
+    style.set_tick(size=0.04)
+    style.dxf.dimtxt = _TEXT_M
+    style.dxf.dimgap = 0.02
+    style.dxf.dimexe = 0.0
+    style.dxf.dimexo = 0.0
+    style.dxf.dimse1 = style.dxf.dimse2 = 1
+    style.dxf.dimclrd = style.dxf.dimclrt = _BY_LAYER
+    style.dxf.dimdec = 2
+    style.dxf.dimzin = 0
+    style.dxf.dimtad = 0
+    style.dxf.dimtih = style.dxf.dimtoh = 0
+
+
+def _draw(document: Drawing, floor: Storey, suffix: str) -> None:
+    for layer, colour in LAYERS.items():
+        document.layers.add(layer + suffix, color=colour)
+    space = document.modelspace()
+
+    def on(layer: str) -> dict[str, Any]:
+        return {"layer": layer + suffix}
+
+    solid = inner_walls(floor)
+    for part in shapely.get_parts(solid):
+        if isinstance(part, shapely.Polygon) and not part.is_empty:
+            hatch = space.add_hatch(color=_BY_LAYER, dxfattribs=on("A-WALL-PATT"))
+            for number, ring in enumerate((part.exterior, *part.interiors)):
+                flags = 1 if number == 0 else 16
+                hatch.paths.add_polyline_path(_points(ring), is_closed=True, flags=flags)
+    for room in floor.rooms:
+        _draw_room(space, room, on)
+    shared = by_faces(floor)
+    kinds: tuple[tuple[str, tuple[Aperture, ...]], ...] = (
+        ("A-DOOR", floor.doors),
+        ("A-FLOR-OPNG", floor.openings),
+        ("A-GLAZ", floor.windows),
+    )
+    for layer, items in kinds:
+        for item in items:
+            box = aperture_area(item, max(through(item, shared), _SYMBOL_M))
+            space.add_lwpolyline(_points(box.exterior), close=True, dxfattribs=on(layer))
+
+
+def _draw_room(space: Any, room: Room, on: Any) -> None:
+    area = room_area(room)
+    for part in shapely.get_parts(area):
+        for ring in (part.exterior, *part.interiors):
+            space.add_lwpolyline(_points(ring), close=True, dxfattribs=on("A-AREA"))
+    x, y = label_place(area)
+    for line, text in enumerate((plain(room.name), f"{area.area:.2f} m²")):
+        words = space.add_text(text, height=_TEXT_M * 1.5, dxfattribs=on("A-AREA-IDEN"))
+        words.set_placement((x, y - 0.25 * line), align=_middle())
+    for wall in room.walls:
+        space.add_line(wall.a, wall.b, dxfattribs=on("A-WALL"))
+        if wall_length(wall) < 1e-6:
+            continue
+        # From left to right, so that its text reads from below; inside the room all the same.
+        rightwards = tuple(wall.a - wall.b) < (0.0, 0.0)
+        ends = (wall.a, wall.b) if rightwards else (wall.b, wall.a)
+        made = space.add_aligned_dim(
+            p1=tuple(ends[0]),
+            p2=tuple(ends[1]),
+            distance=_DIMENSION_OFFSET_M if rightwards else -_DIMENSION_OFFSET_M,
+            dimstyle=_DIMENSION_STYLE,
+            dxfattribs=on("A-ANNO-DIMS"),
+        )
+        made.render()
+
+
+def _middle() -> Any:
+    from ezdxf.enums import TextEntityAlignment
+
+    return TextEntityAlignment.MIDDLE_CENTER
+
+
+def _points(ring: Any) -> Any:
+    return np.asarray(shapely.get_coordinates(ring))[:-1].tolist()
+
+
+def plain(text: str) -> str:
+    """A printable name without what DXF takes for codes: %%c, ^J, \\U+00B2."""
+    apart = re.sub("%(?=%)", "% ", printable(text))
+    apart = re.sub(r"\^(?! )", "^ ", apart)
+    return re.sub(r"\\(?=[UuMm]\+)", "/", apart)

@@ -1,0 +1,108 @@
+"""All formats that a plan is exported to, by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from panoplan.errors import InputError
+from panoplan.exporters.geojson import Anchor
+from panoplan.formats.atomic import make_folder, write_bytes
+from panoplan.types.plan import FloorPlan
+
+Files = Mapping[str, bytes]
+
+
+@dataclass(frozen=True)
+class ExportOptions:
+    """What exports are told beside the plan.
+
+    Attributes:
+        title: of drawings.
+        north: rad, heading of north in the plan, from its second axis towards its first; None
+            where not known.
+        paper: "A4" to "A0" for sheets, None for what suits.
+        anchor: where the plan's origin lies on the globe, for GeoJSON; None for plan metres.
+    """
+
+    title: str
+    north: float | None = None
+    paper: str | None = None
+    anchor: Anchor | None = None
+
+
+def _svg(plan: FloorPlan, options: ExportOptions) -> Files:
+    from panoplan.exporters.sheet.compose import sheets
+    from panoplan.exporters.sheet.svg import sheet_svg
+
+    made = sheets(plan, title=options.title, north=options.north, paper=options.paper)
+    if len(made) == 1:
+        return {"sheet.svg": sheet_svg(made[0])}
+    return {f"sheet_{number}.svg": sheet_svg(sheet) for number, sheet in enumerate(made, 1)}
+
+
+def _pdf(plan: FloorPlan, options: ExportOptions) -> Files:
+    from panoplan.exporters.sheet.compose import sheets
+    from panoplan.exporters.sheet.pdf import sheets_pdf
+
+    made = sheets(plan, title=options.title, north=options.north, paper=options.paper)
+    return {"sheet.pdf": sheets_pdf(made)}
+
+
+def _dxf(plan: FloorPlan, options: ExportOptions) -> Files:
+    from panoplan.exporters.dxf import plan_dxf
+
+    return {"plan.dxf": plan_dxf(plan)}
+
+
+def _geojson(plan: FloorPlan, options: ExportOptions) -> Files:
+    from panoplan.exporters.geojson import plan_geojson
+
+    return {"plan.geojson": plan_geojson(plan, options.anchor)}
+
+
+def _csv(plan: FloorPlan, options: ExportOptions) -> Files:
+    from panoplan.exporters.schedule import room_schedule
+
+    return {"rooms.csv": room_schedule(plan)}
+
+
+KINDS: Mapping[str, Callable[[FloorPlan, ExportOptions], Files]] = {
+    "svg": _svg,
+    "pdf": _pdf,
+    "dxf": _dxf,
+    "geojson": _geojson,
+    "csv": _csv,
+}
+"""Exporters by the name that the command line knows."""
+
+
+def export(
+    plan: FloorPlan, kinds: Sequence[str], folder: Path, options: ExportOptions
+) -> list[Path]:
+    """Writes a plan in some formats; where one fails, none is written.
+
+    Args:
+        plan: metric.
+        kinds: names of `KINDS`.
+        folder: where to; made where it does not exist.
+        options: what they are told.
+
+    Returns:
+        The files in the order of `kinds`.
+
+    Raises:
+        InputError: an unknown kind, a plan that cannot be exported so, or a place that cannot be
+            written; MissingExtraError: a library is not installed.
+    """
+    for kind in kinds:
+        if kind not in KINDS:
+            raise InputError("--to", repr(kind), "some of " + ",".join(KINDS))
+    files: dict[str, bytes] = {}
+    for kind in kinds:
+        files.update(KINDS[kind](plan, options))
+    make_folder(folder)
+    for name, data in files.items():
+        write_bytes(folder / name, data)
+    return [folder / name for name in files]

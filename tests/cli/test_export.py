@@ -1,0 +1,66 @@
+import json
+
+import pytest
+from tests.metrics.plans import plan
+
+from panoplan.cli.main import main
+from panoplan.formats.plan_json import plan_to_dict, write_plan
+
+
+@pytest.fixture
+def folder(tmp_path):
+    write_plan(tmp_path / "plan.json", plan())
+    return tmp_path
+
+
+def test_export_writes_what_it_is_asked_for(folder, capsys):
+    out = folder / "out"
+    words = ["export", str(folder / "plan.json"), "--to", "svg,csv,geojson", "-o", str(out)]
+    words += ["--north", "30", "--anchor", "48.2,16.37", "--paper", "A2", "--title", "My flat"]
+    assert main(words) == 0
+    assert capsys.readouterr().out.split() == [
+        str(out / name) for name in ("sheet.svg", "rooms.csv", "plan.geojson")
+    ]
+    text = (out / "sheet.svg").read_text(encoding="utf-8")
+    assert "My flat" in text
+    assert 'width="594mm"' in text
+    assert "north" in text
+    assert json.loads((out / "plan.geojson").read_bytes())["panoplan"]["coordinates"] == "WGS 84"
+
+
+def newer(data):
+    data["schema"] = 7
+
+
+def not_finite(data):
+    data["rooms"][0]["polygon"][0][0] = float("inf")
+
+
+def no_polygon(data):
+    del data["rooms"][0]["polygon"]
+
+
+@pytest.mark.parametrize(
+    ("spoil", "more", "told"),
+    [
+        (newer, [], "schema 7"),
+        (not_finite, [], "infinity"),
+        (no_polygon, [], r"polygon"),
+        (None, ["--to", "dwg"], "'dwg'; expected some of svg,pdf"),
+        (None, ["--anchor", "48,16"], "--north"),
+        (None, ["--anchor", "48", "--north", "0"], "LATITUDE,LONGITUDE"),
+        (None, ["--anchor", "99,16", "--north", "0"], "latitude within"),
+        (None, ["--north", "nan"], "--north"),
+    ],
+)
+def test_bad_input_is_one_line_and_nothing_is_written(folder, capsys, spoil, more, told):
+    if spoil is not None:
+        data = plan_to_dict(plan())
+        spoil(data)
+        (folder / "plan.json").write_text(json.dumps(data))
+    words = ["export", str(folder / "plan.json"), "--to", "csv", "-o", str(folder / "out"), *more]
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1
+    assert not (folder / "out").exists()
