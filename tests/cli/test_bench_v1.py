@@ -46,6 +46,7 @@ def test_the_dataset_is_scored_by_one_command(root, tmp_path, capsys):
         (["-o", "x", "--family", "castle"], "found castle; expected"),
         (["-o", "x", "--dataset", "mp3d-fpe"], "expected --root FOLDER"),
         (["-o", "x", "--dataset", "mp3d-fpe", "--root", "nowhere"], "nowhere: found no folder"),
+        (["-o", "x", "--ablate", "--dataset", "mp3d-fpe", "--root", "x"], "simulated buildings"),
         (["-o", "x", "--set", "seed=1"], "expected --methods"),
         ([], "expected -o FOLDER"),
     ],

@@ -7,6 +7,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+from panoplan.bench.markdown import number, pair, table
+from panoplan.bench.v1 import tables as v1
 from panoplan.errors import InputError
 from panoplan.formats.atomic import read_bytes, write_text
 
@@ -23,7 +25,8 @@ def update(page: Path, folder: Path) -> bool:
 
     Args:
         page: Markdown with `<!-- measured: NAMES -->` and `<!-- end of measured -->`; the names,
-            with commas, are of the tables that come between: flats, home, runtime.
+            with commas, are of the tables that come between: buildings,
+            methods, causes, flats, home, runtime.
         folder: of the benchmark files.
 
     Returns:
@@ -61,7 +64,14 @@ def updated(text: str, folder: Path, page: Path) -> str:
         wanted = "<!-- measured: flats, home, runtime --> and <!-- end of measured -->"
         raise InputError(page, "no place for tables", wanted)
     files = [_read(path) for path in sorted(folder.glob("*.json"))]
-    made = {"flats": _flats, "home": _home, "runtime": _runtime}
+    made = {
+        "buildings": v1.statistics,
+        "methods": v1.methods,
+        "causes": v1.causes,
+        "flats": _flats,
+        "home": _home,
+        "runtime": _runtime,
+    }
 
     def filled(marks: re.Match[str]) -> str:
         names = [name.strip() for name in marks["names"].split(",")]
@@ -95,18 +105,18 @@ def _flats(files: list[dict[str, Any]]) -> str:
         for grade in ("mild", "hard"):
             s = data["figures"][grade]["summary"]
             scale = "given" if data["figures"]["metric"] else "recovered"
-            error = "" if scale == "given" else _number(s["scale_error_percent_median"], 2, " %")
-            drift = f"{_number(s['odometry_ate_cm'], 1)} → {_number(s['ate_cm'], 1)}"
+            error = "" if scale == "given" else number(s["scale_error_percent_median"], 2, " %")
+            drift = f"{number(s['odometry_ate_cm'], 1)} → {number(s['ate_cm'], 1)}"
             rows.append(
                 [
                     f"{data['settings']['preset']}, {grade}",
                     f"{scale} {error}".strip(),
                     f"{s['rooms'] - s['lost']} of {s['rooms']}, {s['invented']} invented",
-                    _number(s["mean_iou"], 3),
-                    _number(s["corner_true_to_predicted_cm"], 1, " cm"),
-                    _number(s["wall_cm"], 1, " cm"),
-                    f"{_number(s['walls_within_1_sigma'], 2)} / "
-                    f"{_number(s['walls_within_2_sigma'], 2)}",
+                    number(s["mean_iou"], 3),
+                    number(s["corner_true_to_predicted_cm"], 1, " cm"),
+                    number(s["wall_cm"], 1, " cm"),
+                    f"{number(s['walls_within_1_sigma'], 2)} / "
+                    f"{number(s['walls_within_2_sigma'], 2)}",
                     _recall_precision(s["doors"]),
                     drift,
                 ]
@@ -120,7 +130,7 @@ def _flats(files: list[dict[str, Any]]) -> str:
         f"{count} simulated flats a grade, drifting odometry, unaligned. σ is the ± that the plan "
         "states for a wall."
     )
-    return f"{title}\n\n{_table(heads, rows)}"
+    return f"{title}\n\n{table(heads, rows)}"
 
 
 def _home(files: list[dict[str, Any]]) -> str:
@@ -132,19 +142,19 @@ def _home(files: list[dict[str, Any]]) -> str:
             half, seven = rooms["scores"][1:]
             scale = "given"
             if name == "recovered":
-                scale = f"recovered {_number(f['scale_error_percent'], 2, ' %')}"
+                scale = f"recovered {number(f['scale_error_percent'], 2, ' %')}"
             rows.append(
                 [
                     data["settings"]["preset"],
                     scale,
                     f"{half['hits']} / {half['predicted']}",
                     f"{seven['hits']} / {seven['predicted']}",
-                    _number(rooms["mean_iou"], 3),
-                    _number(rooms["floor_iou"], 3),
-                    _number(corners["true_to_predicted"]["median_cm"], 1, " cm"),
-                    _number(rooms["overlap_m2"], 2, " m²"),
+                    number(rooms["mean_iou"], 3),
+                    number(rooms["floor_iou"], 3),
+                    number(corners["true_to_predicted"]["median_cm"], 1, " cm"),
+                    number(rooms["overlap_m2"], 2, " m²"),
                     _recall_precision(f["doors"]) if f["doors"]["predicted"] else "–",
-                    _number(f["seconds"], 2, " s"),
+                    number(f["seconds"], 2, " s"),
                 ]
             )
     if not rows:
@@ -156,7 +166,7 @@ def _home(files: list[dict[str, Any]]) -> str:
         f"A real home (ZInD, {true} rooms split at openings): 32 photos, a real network's layouts, "
         "true poses, unaligned."
     )
-    return f"{title}\n\n{_table(heads, rows)}"
+    return f"{title}\n\n{table(heads, rows)}"
 
 
 def _runtime(files: list[dict[str, Any]]) -> str:
@@ -166,12 +176,12 @@ def _runtime(files: list[dict[str, Any]]) -> str:
         rows.append(
             [
                 data["settings"]["preset"],
-                _number(f["update_ms_median"], 1, " ms"),
-                _number(f["update_late_over_early"], 2),
-                _number(f["leaving_ms_median"], 0, " ms"),
-                _number(f["plan_ms"], 0, " ms"),
-                _number(f["finish_s"], 1, " s"),
-                _number(f["peak_memory_mb"], 0, " MB"),
+                number(f["update_ms_median"], 1, " ms"),
+                number(f["update_late_over_early"], 2),
+                number(f["leaving_ms_median"], 0, " ms"),
+                number(f["plan_ms"], 0, " ms"),
+                number(f["finish_s"], 1, " s"),
+                number(f["peak_memory_mb"], 0, " MB"),
             ]
         )
     if not rows:
@@ -184,19 +194,8 @@ def _runtime(files: list[dict[str, Any]]) -> str:
         f"({machine['processor']}). Late / early: the slowest 5 % of keyframes 1,900-2,000 over "
         "those of 100-200."
     )
-    return f"{title}\n\n{_table(heads, rows)}"
-
-
-def _table(heads: list[str], rows: list[list[str]]) -> str:
-    lines = [heads, ["---"] * len(heads), *rows]
-    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+    return f"{title}\n\n{table(heads, rows)}"
 
 
 def _recall_precision(found: dict[str, float | None]) -> str:
-    if found["precision"] is None:
-        return "–"
-    return f"{_number(found['recall'], 2)} / {_number(found['precision'], 2)}"
-
-
-def _number(value: float | None, digits: int, unit: str = "") -> str:
-    return "–" if value is None else f"{value:.{digits}f}{unit}"
+    return pair(found["recall"], found["precision"])

@@ -12,7 +12,7 @@ from panoplan.errors import InputError
 from panoplan.formats.atomic import make_folder
 
 if TYPE_CHECKING:
-    from panoplan.bench.v1.scenes import Source
+    from panoplan.bench.v1.scenes import Simulated, Source
 
 _DATASET = "mp3d-fpe"
 
@@ -33,26 +33,45 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="A,B",
         help=f"presets (default: {','.join(PRESETS)})",
     )
+    group.add_argument(
+        "--ablate",
+        action="store_true",
+        help="instead of the table: what knowing the scale, the poses, the layouts or the grouping "
+        "would gain, on the buildings to tune on (seeds 0-24)",
+    )
 
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
-    from panoplan.bench.parallel import processes
-    from panoplan.bench.v1.predict import SHARES, Row
-    from panoplan.bench.v1.run import run, write_figures
-    from panoplan.bench.v1.store import Store
-
     if options.output is None:
         raise InputError("bench v1", "no folder", "-o FOLDER")
     if options.preset or options.config or options.set or options.seed is not None:
         raise InputError("bench v1", "settings", "--methods, whose settings are the benchmark's")
+    if options.dataset is not None and options.root is None:
+        raise InputError("bench v1 --dataset", "no folder", f"--root FOLDER of {_DATASET}")
+    make_folder(options.output)
+    return _ablate(options) if options.ablate else _compare(options)
+
+
+def _compare(options: argparse.Namespace) -> int:
+    from panoplan.bench.parallel import processes
+    from panoplan.bench.v1.predict import SHARES, Row
+    from panoplan.bench.v1.run import run, write_methods
+    from panoplan.bench.v1.scenes import mp3d_fpe_scenes
+    from panoplan.bench.v1.store import Store
+    from panoplan.simulate.families import REPORTED_SEEDS
+
+    sources: dict[str, list[Source]]
+    if options.dataset is not None:
+        sources = {"dataset": list(mp3d_fpe_scenes(options.root))}
+    else:
+        sources = {name: list(own) for name, own in _simulated(options, REPORTED_SEEDS).items()}
     rows = [Row(method, share) for method in options.methods for share in SHARES]
     workers = processes(options.jobs)
-    make_folder(options.output)
-    for scenes_of, sources in _sources(options).items():
+    for scenes_of, own in sources.items():
         with progress(scenes_of, quiet=options.quiet) as report:
-            figures = run(sources, rows, Store(options.output), workers, workers, report)
-        for path in write_figures(figures, scenes_of, rows, options.output):
+            figures = run(own, rows, Store(options.output), workers, workers, report)
+        for path in write_methods(figures, scenes_of, rows, options.output):
             print(path)
         for name, row in figures.items():
             for scene in row["scenes"]:
@@ -61,18 +80,33 @@ def act(options: argparse.Namespace) -> int:
     return 0
 
 
-def _sources(options: argparse.Namespace) -> dict[str, list[Source]]:
-    from panoplan.bench.v1.scenes import FAMILIES, REPORTED_SEEDS, Simulated, mp3d_fpe_scenes
+def _ablate(options: argparse.Namespace) -> int:
+    from panoplan.bench.parallel import processes
+    from panoplan.bench.v1.ablation import ablated
+    from panoplan.bench.v1.predict import SHARES, Row
+    from panoplan.bench.v1.run import write_figures
+    from panoplan.bench.v1.store import Store
+    from panoplan.simulate.families import TUNING_SEEDS
 
     if options.dataset is not None:
-        if options.root is None:
-            raise InputError("bench v1 --dataset", "no folder", f"--root FOLDER of {_DATASET}")
-        return {"dataset": list(mp3d_fpe_scenes(options.root))}
+        raise InputError("--ablate", "--dataset", "simulated buildings, of which all is known")
+    row = Row("default", SHARES[0])
+    for family, own in _simulated(options, TUNING_SEEDS).items():
+        with progress(family, quiet=options.quiet) as report:
+            figures = ablated(own, row, Store(options.output), processes(options.jobs), report)
+        print(write_figures("v1-ablation", row.method, family, figures, options.output))
+    return 0
+
+
+def _simulated(options: argparse.Namespace, seeds: range) -> dict[str, list[Simulated]]:
+    from panoplan.bench.v1.scenes import Simulated
+    from panoplan.simulate.families import FAMILIES
+
     if options.family not in (None, *FAMILIES):
         raise InputError("--family", options.family, " or ".join(FAMILIES))
     families = FAMILIES if options.family is None else (options.family,)
-    seeds = REPORTED_SEEDS if options.seeds is None else options.seeds
-    return {family: [Simulated(family, seed) for seed in seeds] for family in families}
+    chosen = seeds if options.seeds is None else options.seeds
+    return {family: [Simulated(family, seed) for seed in chosen] for family in families}
 
 
 def _seeds(text: str) -> range:

@@ -10,7 +10,7 @@ from tests.scenes import L_SHAPE, RECTANGLE, walk
 
 from panoplan.bench.parallel import processes
 from panoplan.bench.v1.predict import Row
-from panoplan.bench.v1.run import run, write_figures
+from panoplan.bench.v1.run import run, write_methods
 from panoplan.bench.v1.scenes import Folder, Recording, mp3d_fpe_scenes
 from panoplan.bench.v1.store import Store
 from panoplan.errors import InputError
@@ -189,7 +189,7 @@ def test_a_dataset_of_folders(tmp_path):
     # Nobody knows the camera's height, so metres cannot be told.
     assert row["scenes"][0]["unaligned"] is None
     assert row["summary"]["unaligned"]["rooms_50 recall"] is None
-    (path,) = write_figures(figures, "dataset", ROWS, tmp_path)
+    (path,) = write_methods(figures, "dataset", ROWS, tmp_path)
     data = json.loads(path.read_text())
     assert (path.name, data["benchmark"]) == ("v1-dataset-paper.json", "v1")
     assert data["figures"]["shares"]["1"] == json.loads(json.dumps(row))

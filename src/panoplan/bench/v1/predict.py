@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import hashlib
 import time
 import traceback
 from dataclasses import dataclass
 
-from panoplan.bench.v1.scenes import Source, code_version
+from panoplan.bench.v1.scenes import Recording, Source, code_version, digest
 from panoplan.config import PRESETS, Config, override, preset
 from panoplan.errors import PanoplanError
 from panoplan.estimator.front import FloorPlanEstimator
@@ -17,6 +16,9 @@ from panoplan.types.plan import FloorPlan
 METHODS = PRESETS
 SHARES = (0.2, 1.0)
 """Share of the keyframes that the scale is recovered from. Source: Table II of the paper."""
+
+METHOD_CODE = ("errors", "config", "geometry", "types", "stages", "estimator")
+"""What a prediction depends on beside scene and settings."""
 
 
 @dataclass(frozen=True)
@@ -51,9 +53,7 @@ class Task:
 
     def key(self) -> str:
         """A hash of all that the prediction depends on: scene, settings and code."""
-        code = code_version("errors", "config", "geometry", "types", "stages", "estimator")
-        text = f"{self.source.key()} {self.row.config!r} {code}"
-        return hashlib.sha256(text.encode()).hexdigest()
+        return digest(self.source.key(), repr(self.row.config), code_version(*METHOD_CODE))
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,14 +78,26 @@ def predict(task: Task) -> Prediction:
         task: scene and row.
 
     Returns:
+        As of `made_of`.
+    """
+    return made_of(task.source.open(), task.row.config)
+
+
+def made_of(recording: Recording, config: Config) -> Prediction:
+    """What a method makes of a recording.
+
+    Args:
+        recording: the walk; its truth is not looked at.
+        config: the method's settings.
+
+    Returns:
         The plan, or why there is none: a scene that a method fails on counts, it does not stop the
         benchmark.
     """
-    recording = task.source.open()
     started = time.process_time()
+    walk = Walk(recording.trajectory_unit, recording.camera_height_m, len(recording.keyframes))
     try:
-        walk = Walk("unknown", recording.camera_height_m, len(recording.keyframes))
-        estimator = FloorPlanEstimator(task.row.config, walk)
+        estimator = FloorPlanEstimator(config, walk)
         for keyframe in recording.keyframes:
             estimator.update(keyframe)
         estimator.finish()

@@ -61,10 +61,10 @@ def run(
     return figures
 
 
-def write_figures(
+def write_methods(
     figures: dict[str, dict[str, Any]], scenes_of: str, rows: Sequence[Row], folder: Path
 ) -> list[Path]:
-    """Writes one file a method, as the tables are made from.
+    """Writes one file a method.
 
     Args:
         figures: of `run`.
@@ -78,10 +78,30 @@ def write_figures(
     paths = []
     for method in dict.fromkeys(row.method for row in rows):
         own = {f"{row.share:g}": figures[row.name] for row in rows if row.method == method}
-        data = record("v1", preset(method), {"scenes_of": scenes_of, "shares": own})
-        paths.append(folder / f"v1-{scenes_of}-{method}.json")
-        write_text(paths[-1], json.dumps(data, indent=1) + "\n")
+        told = {"shares": own}
+        paths.append(write_figures("v1", method, scenes_of, told, folder))
     return paths
+
+
+def write_figures(
+    benchmark: str, method: str, scenes_of: str, figures: dict[str, Any], folder: Path
+) -> Path:
+    """Writes figures with settings, commit and machine, as the tables are made from.
+
+    Args:
+        benchmark: "v1", or "v1-" and a study's name.
+        method: preset that they are of.
+        scenes_of: what the scenes are of.
+        figures: plain values.
+        folder: where to.
+
+    Returns:
+        The file, `<benchmark>-<scenes_of>-<method>.json`.
+    """
+    path = folder / f"{benchmark}-{scenes_of}-{method}.json"
+    data = record(benchmark, preset(method), {"scenes_of": scenes_of, **figures})
+    write_text(path, json.dumps(data, indent=1) + "\n")
+    return path
 
 
 def _keep_scenes(

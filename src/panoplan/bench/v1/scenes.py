@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 import hashlib
+from collections.abc import Iterable
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
-from typing import Protocol
+from typing import Literal, Protocol
 
 import panoplan
 from panoplan.datasets.detect import open_scene, read_truth
 from panoplan.datasets.mp3d_fpe import version_folder
 from panoplan.errors import InputError
-from panoplan.simulate.scene import SimulatedScene, simulate_flat
+from panoplan.simulate.families import simulate_scene
+from panoplan.simulate.noise import NoiseModel
+from panoplan.simulate.scene import Grade, SimulatedScene
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.truth import GroundTruth
-
-FAMILIES = ("flat",)
-REPORTED_SEEDS = range(25, 50)
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,12 +29,14 @@ class Recording:
         truth: true plan and poses.
         camera_height_m: of the median camera, None where unknown.
         true_ch_per_su: true scale in heights of the first camera, None where unknown.
+        trajectory_unit: "m" where the method is told that it is metric.
     """
 
     keyframes: tuple[Keyframe, ...]
     truth: GroundTruth
     camera_height_m: float | None
     true_ch_per_su: float | None
+    trajectory_unit: Literal["unknown", "m"] = "unknown"
 
     @property
     def bare(self) -> Recording:
@@ -61,12 +63,14 @@ class Simulated:
     """A made-up building.
 
     Attributes:
-        family: kind of building.
+        family: of `panoplan.simulate.families`.
         seed: which one.
+        grade: of the errors.
     """
 
     family: str
     seed: int
+    grade: Grade | NoiseModel = "hard"
 
     @property
     def name(self) -> str:
@@ -75,11 +79,15 @@ class Simulated:
 
     def key(self) -> str:
         """Of what it is and of the code that makes it."""
-        return _hash(repr(self), code_version("simulate", "geometry", "types"))
+        return digest(repr(self), code_version("simulate", "geometry", "types"))
 
     def open(self) -> Recording:
         """Makes the building and walks through it."""
-        return recorded(simulate_flat(self.seed, "hard"))
+        return recorded(self.simulated())
+
+    def simulated(self) -> SimulatedScene:
+        """The scene with all that is known of how it was made."""
+        return simulate_scene(self.family, self.seed, self.grade)
 
 
 def recorded(scene: SimulatedScene) -> Recording:
@@ -117,11 +125,7 @@ class Folder:
     def key(self) -> str:
         """Of the bytes of its poses, layouts and truth."""
         files = [*self.path.glob("*.json"), *self.path.glob("*.txt"), *self.path.glob("vo*/**/*.*")]
-        digest = hashlib.sha256()
-        for file in sorted(path for path in files if path.is_file()):
-            digest.update(str(file.relative_to(self.path)).encode() + b"\0")
-            digest.update(file.read_bytes())
-        return digest.hexdigest()
+        return _digest_of(self.path, (path for path in files if path.is_file()))
 
     def open(self) -> Recording:
         """Reads it; raises as the readers do."""
@@ -152,16 +156,23 @@ def code_version(*parts: str) -> str:
     """A hash of the source of some of panoplan's packages or modules.
 
     Args:
-        parts: their names, without "panoplan.".
+        parts: their paths within the package, without ending.
     """
     root = Path(panoplan.__file__).parent
-    digest = hashlib.sha256()
-    for part in parts:
-        files = [root / f"{part}.py"] if (root / f"{part}.py").is_file() else []
-        for file in sorted([*files, *(root / part).rglob("*.py")]):
-            digest.update(str(file.relative_to(root)).encode() + b"\0" + file.read_bytes())
-    return digest.hexdigest()
+    modules = (root / f"{part}.py" for part in parts)
+    inside = (file for part in parts for file in (root / part).rglob("*.py"))
+    return _digest_of(root, [*(file for file in modules if file.is_file()), *inside])
 
 
-def _hash(*parts: str) -> str:
+def digest(*parts: str) -> str:
+    """A hash of some texts."""
     return hashlib.sha256("\0".join(parts).encode()).hexdigest()
+
+
+def _digest_of(root: Path, files: Iterable[Path]) -> str:
+    """A hash of files' names and bytes."""
+    made = hashlib.sha256()
+    for file in sorted(files):
+        made.update(str(file.relative_to(root)).encode() + b"\0")
+        made.update(hashlib.sha256(file.read_bytes()).digest())
+    return made.hexdigest()

@@ -4,6 +4,7 @@
     scenes/<scene>/kept.json        its key, and the true scale
     predictions/<scene>/<row>.json  a plan as `panoplan run` writes it
     predictions/<scene>/<row>.kept.json   its key, its cost, why it failed
+    studies/<study>/<name>.json     a measurement of a study, with its key
 
 kept.json comes last and makes the rest valid; what has another key is made anew.
 """
@@ -103,6 +104,22 @@ class Store:
         failed = kept["failure"] is not None
         plan = None if failed else read_plan(self._prediction(task, "json"))
         return Prediction(plan, kept["failure"], kept["cpu_seconds"])
+
+    def has_result(self, name: str, key: str) -> bool:
+        """Whether a study's result of this key is kept."""
+        return self._key(self._result(name)) == key
+
+    def keep_result(self, name: str, key: str, result: dict[str, Any]) -> None:
+        """Keeps a study's result; raises InputError where it cannot be written."""
+        make_folder(self._result(name).parent)
+        self._write(self._result(name), {"key": key, "result": result})
+
+    def result(self, name: str) -> dict[str, Any]:
+        """A study's result that is kept."""
+        return dict(read_json(self._result(name))["result"])
+
+    def _result(self, name: str) -> Path:
+        return self.path / "studies" / f"{name}.json"
 
     def _scene(self, source: Source) -> Path:
         return self.path / "scenes" / source.name

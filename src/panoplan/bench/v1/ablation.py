@@ -1,0 +1,161 @@
+"""What costs most: one stage's output after the other is replaced by the truth."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+from unittest.mock import patch
+
+import numpy as np
+import shapely
+
+from panoplan.bench.parallel import Workers
+from panoplan.bench.v1.predict import METHOD_CODE, Row, made_of
+from panoplan.bench.v1.scenes import Recording, Simulated, code_version, digest, recorded
+from panoplan.bench.v1.score import score, summary
+from panoplan.bench.v1.store import KeptScene, Store
+from panoplan.bench.v1.study import studied
+from panoplan.config import Config
+from panoplan.estimator import settle
+from panoplan.metrics.rooms import region
+from panoplan.pipeline import Progress
+from panoplan.simulate.noise import EXACT, HARD
+from panoplan.stages.plan.floorplan import PlannedRoom, plan_rooms
+from panoplan.types.arrays import IntArray
+from panoplan.types.pose import Pose
+from panoplan.types.truth import GroundTruth
+from panoplan.types.view import RegisteredLayout
+
+Known = Literal["nothing", "scale", "poses", "layouts", "grouping"]
+KNOWN: tuple[Known, ...] = ("nothing", "scale", "poses", "layouts", "grouping")
+
+
+@dataclass(frozen=True)
+class Ablated:
+    """A row of Table II on one scene, where something is known that is else to be found.
+
+    Attributes:
+        source: scene.
+        row: method.
+        known: "scale": the trajectory is metric; "poses": odometry does not drift; "layouts": they
+            are what is to be seen from the camera, without leaks; "grouping": which views are of
+            one room (of methods that fuse views).
+    """
+
+    source: Simulated
+    row: Row
+    known: Known
+
+    @property
+    def name(self) -> str:
+        """What is known, row and scene."""
+        return f"ablation/{self.known}-{self.row.name}-{self.source.name}"
+
+    def key(self) -> str:
+        """Of scene, settings, what is known, and code."""
+        code = code_version(*METHOD_CODE, "metrics", "bench/v1/ablation")
+        return digest(self.source.key(), repr(self.row.config), self.known, code)
+
+    def measure(self) -> dict[str, Any]:
+        """Scores as of `score`."""
+        recording = _knowing(self.source, self.known)
+        truth = recording.truth
+        with _grouped(truth) if self.known == "grouping" else _as_it_is():
+            made = made_of(recording, self.row.config)
+        kept = KeptScene(
+            truth, len(recording.keyframes), recording.camera_height_m, recording.true_ch_per_su
+        )
+        return {"scene": self.source.name, "known": self.known, **score(kept, made)}
+
+
+def ablated(
+    sources: Sequence[Simulated], row: Row, store: Store, workers: Workers, progress: Progress
+) -> dict[str, Any]:
+    """Measures what is gained by knowing each thing.
+
+    Args:
+        sources: scenes of one family.
+        row: method.
+        store: what is kept.
+        workers: do the work.
+        progress: as of `studied`.
+
+    Returns:
+        For each of `KNOWN` the summary and each scene's scores.
+    """
+    work = [Ablated(source, row, known) for known in KNOWN for source in sources]
+    made = studied(work, store, workers, progress)
+    known = {}
+    for name in KNOWN:
+        scenes = [scores for scores in made if scores["known"] == name]
+        known[name] = {"summary": summary(scenes), "scenes": scenes}
+    return {"share": row.share, "known": known}
+
+
+def _knowing(source: Simulated, known: Known) -> Recording:
+    """The walk with its poses, its scale or its layouts as they truly are."""
+    if known == "layouts":
+        exact = replace(EXACT, name="exact layouts", drift_m=HARD.drift_m, drift_deg=HARD.drift_deg)
+        return replace(source, grade=exact).open()
+    scene = source.simulated()
+    recording = recorded(scene)
+    true = scene.truth.trajectory
+    assert true is not None
+    if known == "poses":
+        poses = [
+            Pose(true.rotations[k], true.translations[k] / scene.metres_per_su)
+            for k in range(len(true))
+        ]
+        keyframes = (
+            replace(keyframe, pose=pose)
+            for keyframe, pose in zip(scene.keyframes, poses, strict=True)
+        )
+        return replace(recording, keyframes=tuple(keyframes))
+    if known == "scale":
+        unit = scene.metres_per_su
+        metric = (
+            replace(k, pose=Pose(k.pose.rotation, unit * k.pose.translation))
+            for k in scene.keyframes
+        )
+        assert recording.true_ch_per_su is not None
+        return replace(
+            recording,
+            keyframes=tuple(metric),
+            true_ch_per_su=recording.true_ch_per_su / unit,
+            trajectory_unit="m",
+        )
+    return recording
+
+
+@contextmanager
+def _as_it_is() -> Iterator[None]:
+    yield
+
+
+@contextmanager
+def _grouped(truth: GroundTruth) -> Iterator[None]:
+    """Views are told apart by the true room that their camera stands in."""
+    room = _true_rooms(truth)
+
+    def planned(
+        views: Sequence[RegisteredLayout],
+        config: Config,
+        known: Sequence[Sequence[int]] | None = None,
+    ) -> tuple[PlannedRoom, ...]:
+        own = room[[view.index for view in views]]
+        groups = [np.flatnonzero(own == number).tolist() for number in np.unique(own)]
+        return plan_rooms(views, config, groups)
+
+    with patch.object(settle, "plan_rooms", planned):
+        yield
+
+
+def _true_rooms(truth: GroundTruth) -> IntArray:
+    """(N,) the true room nearest to each camera of the walk."""
+    assert truth.trajectory is not None
+    cameras = shapely.points(truth.trajectory.translations[:, [0, 2]])
+    regions = [region(room.polygon, room.holes) for room in truth.plan.rooms]
+    apart = np.array([shapely.distance(area, cameras) for area in regions])
+    return np.asarray(apart.argmin(axis=0))
