@@ -26,7 +26,7 @@ def update(page: Path, folder: Path) -> bool:
     Args:
         page: Markdown with `<!-- measured: NAMES -->` and `<!-- end of measured -->`; the names,
             with commas, are of the tables that come between: buildings,
-            methods, causes, flats, home, runtime.
+            methods, shapes, scale, sweeps, causes, flats, home, runtime.
         folder: of the benchmark files.
 
     Returns:
@@ -67,6 +67,9 @@ def updated(text: str, folder: Path, page: Path) -> str:
     made = {
         "buildings": v1.statistics,
         "methods": v1.methods,
+        "shapes": v1.shapes,
+        "scale": v1.scale,
+        "sweeps": v1.sweeps,
         "causes": v1.causes,
         "flats": _flats,
         "home": _home,

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import argparse
+import time
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -15,6 +17,12 @@ if TYPE_CHECKING:
     from panoplan.bench.v1.scenes import Simulated, Source
 
 _DATASET = "mp3d-fpe"
+_STUDIES = (
+    ("--ispa", "ispa", "Table III, five kinds of shortest path"),
+    ("--scale-error", "scale", "error of the scale by the number of layouts"),
+    ("--sweeps", "sweeps", "more and less noise, drift, keyframes and leaks"),
+    ("--ablate", "ablation", "what knowing one stage's output would gain, on seeds 0-24"),
+)
 
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
@@ -33,11 +41,13 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="A,B",
         help=f"presets (default: {','.join(PRESETS)})",
     )
+    for flag, study, told in _STUDIES:
+        group.add_argument(
+            flag, dest="studies", action="append_const", const=study, help=f"{told}, not Table II"
+        )
+    group.add_argument("--all", action="store_true", help="Table II and all of these")
     group.add_argument(
-        "--ablate",
-        action="store_true",
-        help="instead of the table: what knowing the scale, the poses, the layouts or the grouping "
-        "would gain, on the buildings to tune on (seeds 0-24)",
+        "--pictures", type=Path, metavar="DIR", help="draws the best, median and worst scene"
     )
 
 
@@ -47,14 +57,24 @@ def act(options: argparse.Namespace) -> int:
         raise InputError("bench v1", "no folder", "-o FOLDER")
     if options.preset or options.config or options.set or options.seed is not None:
         raise InputError("bench v1", "settings", "--methods, whose settings are the benchmark's")
+    studies = [study for _, study, _ in _STUDIES] if options.all else options.studies or []
+    if options.dataset is not None and studies:
+        raise InputError("--dataset", "a study", "simulated buildings, of which all is known")
     if options.dataset is not None and options.root is None:
         raise InputError("bench v1 --dataset", "no folder", f"--root FOLDER of {_DATASET}")
     make_folder(options.output)
-    return _ablate(options) if options.ablate else _compare(options)
+    started = time.monotonic()
+    if options.all or not studies:
+        _compare(options)
+    for study in studies:
+        _study(options, study)
+    print(f"{(time.monotonic() - started) / 60:.1f} minutes")
+    return 0
 
 
-def _compare(options: argparse.Namespace) -> int:
+def _compare(options: argparse.Namespace) -> None:
     from panoplan.bench.parallel import processes
+    from panoplan.bench.v1.pictures import write_pictures
     from panoplan.bench.v1.predict import SHARES, Row
     from panoplan.bench.v1.run import run, write_methods
     from panoplan.bench.v1.scenes import mp3d_fpe_scenes
@@ -67,38 +87,38 @@ def _compare(options: argparse.Namespace) -> int:
     else:
         sources = {name: list(own) for name, own in _simulated(options, REPORTED_SEEDS).items()}
     rows = [Row(method, share) for method in options.methods for share in SHARES]
-    workers = processes(options.jobs)
+    workers, store = processes(options.jobs), Store(options.output)
     for scenes_of, own in sources.items():
         with progress(scenes_of, quiet=options.quiet) as report:
-            figures = run(own, rows, Store(options.output), workers, workers, report)
+            figures = run(own, rows, store, workers, workers, report)
         for path in write_methods(figures, scenes_of, rows, options.output):
             print(path)
         for name, row in figures.items():
             for scene in row["scenes"]:
                 if scene["failure"] is not None:
                     print(f"{scene['scene']}, {name}: failed: {scene['failure']}")
-    return 0
+        if options.pictures is not None:
+            # The last method's, from the first 20 % as the paper shows.
+            shown = rows[-len(SHARES)]
+            scenes = figures[shown.name]["scenes"]
+            for path in write_pictures(options.pictures, scenes_of, shown, scenes, own, store):
+                print(path)
 
 
-def _ablate(options: argparse.Namespace) -> int:
+def _study(options: argparse.Namespace, name: str) -> None:
     from panoplan.bench.parallel import processes
-    from panoplan.bench.v1.ablation import ablated
-    from panoplan.bench.v1.predict import SHARES, Row
     from panoplan.bench.v1.run import write_figures
     from panoplan.bench.v1.store import Store
-    from panoplan.simulate.families import TUNING_SEEDS
+    from panoplan.bench.v1.studies import STUDIES
 
-    if options.dataset is not None:
-        raise InputError("--ablate", "--dataset", "simulated buildings, of which all is known")
-    row = Row("default", SHARES[0])
-    for family, own in _simulated(options, TUNING_SEEDS).items():
-        with progress(family, quiet=options.quiet) as report:
-            figures = ablated(own, row, Store(options.output), processes(options.jobs), report)
-        print(write_figures("v1-ablation", row.method, family, figures, options.output))
-    return 0
+    study, workers = STUDIES[name], processes(options.jobs)
+    for family, own in _simulated(options, study.seeds).items():
+        with progress(f"{name}, {family}", quiet=options.quiet) as report:
+            figures = study.measure(own, Store(options.output), workers, report)
+        print(write_figures(f"v1-{name}", study.method, family, figures, options.output))
 
 
-def _simulated(options: argparse.Namespace, seeds: range) -> dict[str, list[Simulated]]:
+def _simulated(options: argparse.Namespace, seeds: Sequence[int]) -> dict[str, list[Simulated]]:
     from panoplan.bench.v1.scenes import Simulated
     from panoplan.simulate.families import FAMILIES
 

@@ -1,29 +1,16 @@
 """What is known when one thing is known, and nothing else."""
 
-from dataclasses import dataclass
-
 import numpy as np
 import pytest
+from tests.bench.v1.small import Small
 
 from panoplan.bench.parallel import processes
 from panoplan.bench.v1 import ablation
 from panoplan.bench.v1.ablation import KNOWN, Ablated, ablated
 from panoplan.bench.v1.predict import Row
-from panoplan.bench.v1.scenes import Simulated
 from panoplan.bench.v1.store import Store
-from panoplan.simulate.scene import simulate_flat
 
 HERE = processes(1)
-
-
-@dataclass(frozen=True)
-class Small(Simulated):
-    """A flat of few keyframes in metres of their own."""
-
-    def simulated(self):
-        return simulate_flat(
-            self.seed, self.grade, rooms=5, step_m=2.0, keyframes_per_room=4, metres_per_su=0.25
-        )
 
 
 @pytest.fixture(scope="module")

@@ -61,13 +61,10 @@ class Ablated:
     def measure(self) -> dict[str, Any]:
         """Scores as of `score`."""
         recording = _knowing(self.source, self.known)
-        truth = recording.truth
-        with _grouped(truth) if self.known == "grouping" else _as_it_is():
+        with _grouped(recording.truth) if self.known == "grouping" else _as_it_is():
             made = made_of(recording, self.row.config)
-        kept = KeptScene(
-            truth, len(recording.keyframes), recording.camera_height_m, recording.true_ch_per_su
-        )
-        return {"scene": self.source.name, "known": self.known, **score(kept, made)}
+        scores = score(KeptScene.of(recording), made)
+        return {"scene": self.source.name, "known": self.known, **scores}
 
 
 def ablated(

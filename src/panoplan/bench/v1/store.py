@@ -42,6 +42,16 @@ class KeptScene:
     camera_height_m: float | None
     true_ch_per_su: float | None
 
+    @staticmethod
+    def of(recording: Recording) -> KeptScene:
+        """What is kept of a recording."""
+        return KeptScene(
+            recording.truth,
+            len(recording.keyframes),
+            recording.camera_height_m,
+            recording.true_ch_per_su,
+        )
+
 
 @dataclass(frozen=True)
 class Store:

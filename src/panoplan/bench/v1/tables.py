@@ -9,7 +9,7 @@ import numpy as np
 
 from panoplan.bench.markdown import number, pair, table
 from panoplan.bench.v1.differences import Difference, difference
-from panoplan.bench.v1.published import TABLE_I, TABLE_II
+from panoplan.bench.v1.published import TABLE_I, TABLE_II, TABLE_III
 from panoplan.bench.v1.score import column
 from panoplan.errors import InputError
 
@@ -99,6 +99,101 @@ def causes(files: Files) -> str:
             "precision where one thing is known, and what that gains."
         )
         heads = ["known", "rooms .5", "rooms .7", "corners", *_COMPARED]
+        parts.append(f"{title}\n\n{table(heads, rows)}")
+    return "\n".join(parts)
+
+
+def shapes(files: Files) -> str:
+    """Table III: the shortest path's kinds, beside the paper's."""
+    parts = []
+    for data in files:
+        if data["benchmark"] != "v1-ispa":
+            continue
+        paths = data["figures"]["paths"]
+        rows = []
+        for (name, measured), known in zip(paths.items(), TABLE_III, strict=True):
+            aligned = measured["summary"]["aligned"]
+            rows.append(
+                [
+                    name,
+                    _found(aligned, "rooms_50"),
+                    _found(aligned, "corners"),
+                    number(measured["seconds_a_room"], 2, " s"),
+                    f"*{pair(*known.rooms_50)}*",
+                    f"*{pair(*known.corners)}*",
+                    f"*{number(known.seconds, 1, ' s')}*",
+                ]
+            )
+        count = next(iter(paths.values()))["summary"]["scenes"]
+        title = (
+            f"**{_NAMES[data['figures']['scenes_of']]}**, {count} scenes, "
+            f"{data['settings']['preset']}, {100 * data['figures']['share']:.0f} %: the same rooms "
+            "shaped in five ways."
+        )
+        heads = ["shortest path", "rooms .5", "corners", "CPU a room",
+                 "*paper, its own data: rooms .5*", "*corners*", "*a room*"]  # fmt: skip
+        parts.append(f"{title}\n\n{table(heads, rows)}")
+    return "\n".join(parts)
+
+
+def scale(files: Files) -> str:
+    """Error of the scale by the number of layouts."""
+    parts = []
+    for data in files:
+        if data["benchmark"] != "v1-scale":
+            continue
+        methods = data["figures"]["methods"]
+        points = next(iter(methods.values()))["layouts"]
+        rows = [
+            [
+                name,
+                *(
+                    f"{number(point['median'], 2)} / {number(point['percentile_90'], 1)}"
+                    for point in measured["layouts"]
+                ),
+            ]
+            for name, measured in methods.items()
+        ]
+        title = (
+            f"**{_NAMES[data['figures']['scenes_of']]}**: absolute error of the scale in per cent "
+            "after the first layouts of a walk, median / 90th percentile."
+        )
+        heads = [
+            "scale of",
+            *(f"{point['layouts']} layouts ({point['walks']} walks)" for point in points),
+        ]
+        parts.append(f"{title}\n\n{table(heads, rows)}")
+    return "\n".join(parts)
+
+
+def sweeps(files: Files) -> str:
+    """What more and less of each error does."""
+    parts = []
+    for data in files:
+        if data["benchmark"] != "v1-sweeps":
+            continue
+        rows = []
+        for point in data["figures"]["points"]:
+            means = point["summary"]
+            aligned = means["aligned"]
+            rows.append(
+                [
+                    f"{point['swept']} × {point['factor']:g}",
+                    number(point["keyframes_a_room"], 0),
+                    *(_found(aligned, name) for name in ("rooms_50", "rooms_70", "corners")),
+                    _found(aligned, "doors"),
+                    number(aligned["mean_iou"], 3),
+                    number(means["scale_error_percent_median"], 2, " %"),
+                ]
+            )
+        count = data["figures"]["points"][0]["summary"]["scenes"]
+        title = (
+            f"**{_NAMES[data['figures']['scenes_of']]}**, {count} scenes, "
+            f"{data['settings']['preset']}, {100 * data['figures']['share']:.0f} %: factors on "
+            "one kind of error, or on the number of keyframes."
+        )
+        heads = ["changed", "keyframes a room", "rooms .5", "rooms .7", "corners", "doors",
+                 "mean IoU", "scale error, median"]  # fmt: skip
         parts.append(f"{title}\n\n{table(heads, rows)}")
     return "\n".join(parts)
 

@@ -1,0 +1,133 @@
+"""What each kind of error costs: one after the other made smaller and larger."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any
+
+from panoplan.bench.parallel import Workers
+from panoplan.bench.v1.predict import METHOD_CODE, Row, made_of
+from panoplan.bench.v1.scenes import Recording, Simulated, code_version, digest
+from panoplan.bench.v1.score import score, summary
+from panoplan.bench.v1.store import KeptScene, Store
+from panoplan.bench.v1.study import studied
+from panoplan.pipeline import Progress
+from panoplan.simulate.noise import HARD, NoiseModel
+
+USUAL = "as it is"
+SWEEPS: dict[str, tuple[float, ...]] = {
+    USUAL: (1.0,),
+    "layout errors": (0.0, 0.5, 2.0),
+    "drift": (0.0, 0.5, 2.0, 4.0),
+    "keyframes": (0.5, 0.25, 0.125),
+    "leaks": (0.0, 2.0),
+}
+"""Factors on what the scenes have."""
+
+
+def noise(swept: str, factor: float) -> NoiseModel:
+    """The usual errors, some of them changed.
+
+    Args:
+        swept: of `SWEEPS`; "keyframes" changes no error.
+        factor: on the boundary's own error and the common one of a panorama's ranges; on the
+            odometry's drift; or on the probabilities that a boundary goes through a passage.
+    """
+    if swept == "layout errors":
+        bins = (
+            replace(b, bias_deg=factor * b.bias_deg, core_deg=factor * b.core_deg)
+            for b in HARD.bins
+        )
+        return replace(
+            HARD,
+            bins=tuple(bins),
+            scale_std=factor * HARD.scale_std,
+            scale_core_std=factor * HARD.scale_core_std,
+            height_jitter=factor * HARD.height_jitter,
+        )
+    if swept == "drift":
+        return replace(HARD, drift_m=factor * HARD.drift_m, drift_deg=factor * HARD.drift_deg)
+    if swept == "leaks":
+        return replace(
+            HARD,
+            door_leak=min(1.0, factor * HARD.door_leak),
+            opening_leak=min(1.0, factor * HARD.opening_leak),
+        )
+    return HARD
+
+
+@dataclass(frozen=True)
+class Swept:
+    """A scene with one kind of error changed.
+
+    Attributes:
+        source: scene.
+        row: method.
+        swept: kind of error.
+        factor: on it.
+    """
+
+    source: Simulated
+    row: Row
+    swept: str
+    factor: float
+
+    @property
+    def name(self) -> str:
+        """Kind, factor, row and scene."""
+        kind = self.swept.replace(" ", "_")
+        return f"sweeps/{kind}-{self.factor:g}-{self.row.name}-{self.source.name}"
+
+    def key(self) -> str:
+        """Of scene, settings, what is changed, and code."""
+        code = code_version(*METHOD_CODE, "metrics", "bench/v1/sweeps")
+        return digest(self.source.key(), repr(self.row.config), self.swept, repr(self.factor), code)
+
+    def measure(self) -> dict[str, Any]:
+        """Scores as of `score`; of fewer keyframes, still over the rooms of the whole walk."""
+        recording = replace(self.source, grade=noise(self.swept, self.factor)).open()
+        walked = thinned(recording, round(1 / self.factor) if self.swept == "keyframes" else 1)
+        scores = score(KeptScene.of(walked), made_of(walked, self.row.config))
+        return {
+            "scene": self.source.name, "swept": self.swept, "factor": self.factor, **scores
+        }  # fmt: skip
+
+
+def thinned(recording: Recording, stride: int) -> Recording:
+    """Every so many keyframes of a walk; its truth remains that of all."""
+    return replace(recording, keyframes=recording.keyframes[::stride])
+
+
+def swept(
+    sources: Sequence[Simulated], row: Row, store: Store, workers: Workers, progress: Progress
+) -> dict[str, Any]:
+    """Measures all sweeps.
+
+    Args:
+        sources: scenes of one family.
+        row: method.
+        store: what is kept.
+        workers: do the work.
+        progress: as of `studied`.
+
+    Returns:
+        For each sweep and factor the summary, each scene's scores, and keyframes a room.
+    """
+    kinds = [(name, factor) for name, factors in SWEEPS.items() for factor in factors]
+    work = [Swept(source, row, *kind) for kind in kinds for source in sources]
+    made = studied(work, store, workers, progress)
+    points = []
+    for name, factor in kinds:
+        scenes = [s for s in made if (s["swept"], s["factor"]) == (name, factor)]
+        keyframes, rooms = (sum(scene[what] for scene in scenes) for what in ("keyframes", "rooms"))
+        points.append(
+            {
+                "swept": name,
+                "factor": factor,
+                "keyframes_a_room": keyframes / rooms,
+                "summary": summary(scenes),
+                "scenes": scenes,
+            }
+        )
+    return {"share": row.share, "points": points}
