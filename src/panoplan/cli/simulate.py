@@ -11,6 +11,7 @@ from panoplan.cli.progress import progress
 from panoplan.errors import InputError
 
 if TYPE_CHECKING:
+    from panoplan.pipeline import Progress
     from panoplan.simulate.scene import SimulatedScene
 
 _MOST_SCENES = 10_000
@@ -46,6 +47,14 @@ def add_parser(commands: Any) -> None:
     parser.add_argument(
         "--format", choices=["sequence", "mp3d-fpe"], default="sequence", help="kind of folder"
     )
+    parser.add_argument(
+        "--render",
+        choices=["preview", "still"],
+        help="also photographs of every keyframe, their depth and true layouts (sequence only)",
+    )
+    parser.add_argument(
+        "--image-width", type=int, default=1024, metavar="PX", help="of photographs (default: 1024)"
+    )
     parser.add_argument("--quiet", action="store_true", help="no progress")
     parser.set_defaults(act=act)
 
@@ -60,13 +69,18 @@ def act(options: argparse.Namespace) -> int:
         raise InputError("--rooms", "with --family", "one of them: a family draws its rooms")
     if options.output.exists() and (not options.output.is_dir() or any(options.output.iterdir())):
         raise InputError(options.output, "something there", "a new or an empty folder")
+    if options.render and options.format != "sequence":
+        raise InputError("--render", f"--format {options.format}", "--format sequence")
+    if options.image_width % 2 or not 64 <= options.image_width <= 8192:
+        raise InputError("--image-width", str(options.image_width), "an even number, 64 to 8192")
     count = options.scenes or 1
     told = []
     with progress("simulate", quiet=options.quiet) as report:
         for number in range(count):
             scene = _scene(options, options.seed + number)
             folder = options.output if options.scenes is None else options.output / scene.name
-            _write(scene, folder, options)
+            images = _photographed(scene, folder, options, options.seed + number, report)
+            _write(scene, folder, options, images)
             told.append(
                 f"{len(scene.truth.plan.rooms)} rooms, {len(scene.keyframes)} keyframes: {folder}"
             )
@@ -86,12 +100,37 @@ def _scene(options: argparse.Namespace, seed: int) -> SimulatedScene:
     )
 
 
-def _write(scene: SimulatedScene, folder: Path, options: argparse.Namespace) -> None:
+def _photographed(
+    scene: SimulatedScene, folder: Path, options: argparse.Namespace, seed: int, report: Progress
+) -> dict[str, str] | None:
+    if options.render is None:
+        return None
+    from panoplan.simulate.render.record import record
+    from panoplan.simulate.render.scene import QUALITIES
+
+    return record(
+        folder,
+        scene,
+        seed,
+        QUALITIES[options.render],
+        width=options.image_width,
+        told=lambda done, total: report(done, total, f"rendering {folder.name}"),
+    )
+
+
+def _write(
+    scene: SimulatedScene,
+    folder: Path,
+    options: argparse.Namespace,
+    images: dict[str, str] | None,
+) -> None:
     from panoplan.formats.mp3d_fpe import write_mp3d_fpe
     from panoplan.formats.sequence import write_sequence
 
     if options.format == "sequence":
-        write_sequence(folder, scene.name, scene.keyframes, scene.truth, scene.camera_height_m)
+        write_sequence(
+            folder, scene.name, scene.keyframes, scene.truth, scene.camera_height_m, images
+        )
         return
     numbered = [replace(k, id=str(n + 1)) for n, k in enumerate(scene.keyframes)]
     write_mp3d_fpe(folder if options.scenes is None else folder / "0", numbered, scene.truth)

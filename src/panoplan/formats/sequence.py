@@ -5,6 +5,7 @@ from __future__ import annotations
 import collections
 import json
 import re
+from collections.abc import Mapping
 from collections.abc import Sequence as Items
 from dataclasses import dataclass
 from pathlib import Path
@@ -129,6 +130,7 @@ def write_sequence(
     keyframes: Items[Keyframe],
     truth: GroundTruth | None = None,
     camera_height_m: float | None = None,
+    images: Mapping[str, str] | None = None,
 ) -> None:
     """Writes a sequence folder; sequence.json, which makes it one, comes last.
 
@@ -139,6 +141,7 @@ def write_sequence(
         truth: written to floorplan_gt.json and trajectory_gt.tum; its trajectory has one pose a
             keyframe, in the same order, or is None.
         camera_height_m: metres, or None.
+        images: path within the folder of each keyframe's image, by its id, where there are any.
 
     Raises:
         InputError: no keyframe, ids that stand twice or are no file names, a true trajectory of
@@ -166,7 +169,10 @@ def write_sequence(
         "name": name,
         "layout_size": [widths[0] // 2, widths[0]] if len(set(widths)) == 1 else None,
         "camera_height": camera_height_m,
-        "keyframes": [{"id": k.id, "order": n} for n, k in enumerate(keyframes)],
+        "keyframes": [
+            {"id": k.id, "order": n} | ({"image": images[k.id]} if images else {})
+            for n, k in enumerate(keyframes)
+        ],
     }
     write_text(folder / DESCRIPTION, json.dumps(description, ensure_ascii=False, indent=1) + "\n")
 

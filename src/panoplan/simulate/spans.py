@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from panoplan.simulate.views import Surface, View
-from panoplan.types.arrays import BoolArray
+from panoplan.types.arrays import BoolArray, IntArray
 from panoplan.types.layout import Spans
 
 _REFERENCE_WIDTH = 1024
@@ -69,7 +69,8 @@ def noisy_spans(view: View, errors: SpanErrors, rng: np.random.Generator) -> Spa
         zip(_KINDS, (errors.door_recall, errors.opening_recall, errors.window_recall), strict=True)
     )
     for kind in _KINDS:
-        for first, last in _runs(view, kind):
+        # Two passages that touch in the image are two.
+        for first, last in column_runs(view.closed_surface == kind, view.passage):
             chance = rng.random()
             ends = [_off(column, errors, width, rng) for column in (first, last)]
             if last - first < _FEWEST_COLUMNS or ends[1] - ends[0] < _FEWEST_COLUMNS:
@@ -87,20 +88,24 @@ def noisy_spans(view: View, errors: SpanErrors, rng: np.random.Generator) -> Spa
     return Spans(*(np.array(sorted(told[kind])).reshape(-1, 2) for kind in _KINDS))
 
 
-def _runs(view: View, kind: Surface) -> list[tuple[int, int]]:
-    """First and last column of each stretch of one kind; the last may lie beyond the edge."""
-    width = len(view.range_m)
-    there: BoolArray = view.closed_surface == kind
-    # Two passages that touch in the image are two.
-    begins = np.flatnonzero(
-        there & ~(np.roll(there, 1) & (np.roll(view.passage, 1) == view.passage))
-    )
+def column_runs(there: BoolArray, group: IntArray) -> list[tuple[int, int]]:
+    """Stretches of columns.
+
+    Args:
+        there: (W,) which columns belong to one.
+        group: (W,) neighbours of unequal groups belong to two.
+
+    Returns:
+        First and last column of each; the last may lie beyond the image's edge.
+    """
+    width = len(there)
+    begins = np.flatnonzero(there & ~(np.roll(there, 1) & (np.roll(group, 1) == group)))
     runs = []
     for first in begins:
         last = int(first)
         while last + 1 - first < width:
             after = (last + 1) % width
-            if not there[after] or view.passage[after] != view.passage[first]:
+            if not there[after] or group[after] != group[first]:
                 break
             last += 1
         runs.append((int(first), last))

@@ -1,0 +1,1 @@
+"""Pictures of simulated buildings: surfaces, light, one ray caster, one shader."""

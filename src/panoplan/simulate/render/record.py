@@ -1,0 +1,93 @@
+"""The pictures that a simulated walk would have brought home."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from panoplan.formats.atomic import make_folder, write_bytes
+from panoplan.formats.layout_npz import write_layout_npz
+from panoplan.geometry.rigid import heading_of
+from panoplan.simulate.render.develop import develop, draw_development, jpeg
+from panoplan.simulate.render.labels import Labeller
+from panoplan.simulate.render.materials import Float32Array
+from panoplan.simulate.render.scene import Quality, Scene
+from panoplan.simulate.scene import SimulatedScene
+from panoplan.simulate.walks import about_y
+
+IMAGES, DEPTHS, TRUE_LAYOUTS = "images", "depth", "layouts_gt"
+_JPEG_QUALITY = 92
+_MOST_MM = 65535
+
+
+def record(
+    folder: Path,
+    simulated: SimulatedScene,
+    seed: int,
+    quality: Quality,
+    *,
+    width: int = 1024,
+    told: Callable[[int, int], None] = lambda done, total: None,
+) -> dict[str, str]:
+    """Photographs every keyframe of a simulated walk with one camera.
+
+    Args:
+        folder: gets `images/ID.jpg`; `depth/ID.png`, 16 bit, millimetres along the ray, 0 where
+            nothing was met; `layouts_gt/ID.npz`, the true layouts.
+        simulated: the walk.
+        seed: of the building's looks and the camera.
+        quality: of the rendering.
+        width: of the images.
+        told: called with the number of pictures done and of all.
+
+    Returns:
+        Path of each image within the folder, by its keyframe's id.
+
+    Raises:
+        InputError: the building cannot be labelled from a keyframe, or a place cannot be written.
+    """
+    scene_seed, camera_seed, *seeds = np.random.SeedSequence(seed).spawn(
+        2 + len(simulated.keyframes)
+    )
+    poses = simulated.truth.trajectory
+    if poses is None:
+        raise ValueError("a simulated scene without its true trajectory")
+    scene = Scene(simulated.building, scene_seed, quality, clear=poses.translations[:, [0, 2]])
+    labeller = Labeller(scene)
+    # The file itself is the only compression.
+    development = replace(draw_development(np.random.default_rng(camera_seed)), jpeg=0)
+    for part in (IMAGES, DEPTHS, TRUE_LAYOUTS):
+        make_folder(folder / part)
+    images = {}
+    for k, keyframe in enumerate(simulated.keyframes):
+        pose, key = poses[k], keyframe.id
+        camera = pose.translation - np.array([0.0, simulated.camera_height_m, 0.0])
+        panorama = scene.panorama(camera, pose.rotation, width)
+        picture = develop(panorama.radiance, development, np.random.default_rng(seeds[k]))
+        heading = heading_of(pose.rotation)
+        labels = labeller.labels(
+            camera[[0, 2]],
+            heading,
+            -float(camera[1]),
+            width=width,
+            level_from_cam=about_y(np.array([-heading]))[0] @ pose.rotation,
+        )
+        images[key] = f"{IMAGES}/{key}.jpg"
+        write_bytes(folder / images[key], jpeg(picture, _JPEG_QUALITY))
+        write_bytes(folder / DEPTHS / f"{key}.png", _depth_png(panorama.distance_m))
+        write_layout_npz(folder / TRUE_LAYOUTS / f"{key}.npz", labels.closed)
+        told(k + 1, len(simulated.keyframes))
+    return images
+
+
+def _depth_png(distance_m: Float32Array) -> bytes:
+    known = np.isfinite(distance_m)
+    millimetres = np.rint(np.where(known, distance_m, 0) * 1000).clip(0, _MOST_MM)
+    buffer = io.BytesIO()
+    Image.fromarray(millimetres.astype(np.uint16)).save(buffer, format="PNG")
+    return buffer.getvalue()
