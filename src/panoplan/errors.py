@@ -23,6 +23,10 @@ class InputError(PanoplanError):
         line = f"{source}: found {found}; expected {expected}"
         super().__init__(" ".join(line.split()))
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[str, str, str]]:
+        """So that it can come from another process."""
+        return type(self), (self.source, self.found, self.expected)
+
 
 class ConfigError(InputError):
     """A setting is unknown, of the wrong type, or outside its range."""
@@ -38,6 +42,11 @@ class MissingExtraError(PanoplanError):
     """
 
     def __init__(self, purpose: str, package: str, extra: str) -> None:
+        self.purpose, self.package, self.extra = purpose, package, extra
         super().__init__(
             f"{purpose} needs {package}, which is not installed: pip install 'panoplan[{extra}]'"
         )
+
+    def __reduce__(self) -> tuple[type[MissingExtraError], tuple[str, str, str]]:
+        """So that it can come from another process."""
+        return type(self), (self.purpose, self.package, self.extra)

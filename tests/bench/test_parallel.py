@@ -1,12 +1,15 @@
 import math
 import os
 from operator import itemgetter
+from pathlib import Path
 
 import pytest
 
 from panoplan.bench import accuracy
 from panoplan.bench.parallel import WorkerLostError, mapped, processes
+from panoplan.bench.v1.scenes import mp3d_fpe_scenes
 from panoplan.config import preset
+from panoplan.errors import InputError
 
 
 @pytest.mark.parametrize("jobs", [1, 3])
@@ -22,6 +25,11 @@ def test_results_come_in_the_order_of_the_work(jobs):
 def test_a_failure_in_another_process_is_raised_here():
     with pytest.raises(IndexError):
         mapped(itemgetter(2), [[1, 2, 3], [1]], processes(2), lambda *_: None)
+
+
+def test_an_input_error_in_another_process_is_one_here():
+    with pytest.raises(InputError, match="nowhere: found no folder"):
+        mapped(mp3d_fpe_scenes, [Path("nowhere")] * 2, processes(2), lambda *_: None)
 
 
 def test_a_process_that_dies_is_told():

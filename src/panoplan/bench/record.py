@@ -5,19 +5,19 @@ from __future__ import annotations
 import os
 import platform
 import subprocess
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 from panoplan import __version__
-from panoplan.config import Config, as_dict
 
 
-def record(name: str, config: Config, figures: Any) -> dict[str, Any]:
+def record(name: str, settings: Mapping[str, Any], figures: Any) -> dict[str, Any]:
     """The figures with version, commit, machine and settings.
 
     Args:
         name: of the benchmark.
-        config: settings it ran with.
+        settings: it ran with, plain values, "preset" among them.
         figures: plain values.
     """
     return {
@@ -31,7 +31,7 @@ def record(name: str, config: Config, figures: Any) -> dict[str, Any]:
             "system": platform.system(),
         },
         "figures": figures,
-        "settings": as_dict(config),
+        "settings": dict(settings),
     }
 
 

@@ -49,6 +49,7 @@ def act(options: argparse.Namespace) -> int:
         return bench_v1.act(options)
     from panoplan.bench import accuracy, home, runtime, table
     from panoplan.bench.record import record
+    from panoplan.config import as_dict
 
     if options.what in ("home", "table") and options.input is None:
         raise InputError(f"bench {options.what}", "no path", "bench home SCENE or bench table PAGE")
@@ -67,7 +68,7 @@ def act(options: argparse.Namespace) -> int:
             figures = home.measure(options.input, config)
         else:
             figures = runtime.measure(config, report)
-    text = json.dumps(record(options.what, config, figures), indent=1) + "\n"
+    text = json.dumps(record(options.what, as_dict(config), figures), indent=1) + "\n"
     if options.output is None:
         print(text, end="")
     else:

@@ -14,9 +14,11 @@ from panoplan.errors import InputError
 from panoplan.formats.atomic import make_folder
 
 if TYPE_CHECKING:
+    from panoplan.bench.parallel import Workers
     from panoplan.bench.v1.scenes import Simulated, Source
 
 _DATASET = "mp3d-fpe"
+_METHODS = ("points", *PRESETS)
 _STUDIES = (
     ("--ispa", "ispa", "Table III, five kinds of shortest path"),
     ("--scale-error", "scale", "error of the scale by the number of layouts"),
@@ -37,15 +39,18 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     group.add_argument(
         "--methods",
         type=_methods,
-        default=PRESETS,
+        default=_METHODS,
         metavar="A,B",
-        help=f"presets (default: {','.join(PRESETS)})",
+        help=f"points (from a scan), or presets (default: {','.join(_METHODS)})",
     )
     for flag, study, told in _STUDIES:
         group.add_argument(
             flag, dest="studies", action="append_const", const=study, help=f"{told}, not Table II"
         )
     group.add_argument("--all", action="store_true", help="Table II and all of these")
+    group.add_argument(
+        "--ray", metavar="ADDRESS", help="works on a Ray cluster instead of --jobs processes"
+    )
     group.add_argument(
         "--pictures", type=Path, metavar="DIR", help="draws the best, median and worst scene"
     )
@@ -75,7 +80,7 @@ def act(options: argparse.Namespace) -> int:
 def _compare(options: argparse.Namespace) -> None:
     from panoplan.bench.parallel import processes
     from panoplan.bench.v1.pictures import write_pictures
-    from panoplan.bench.v1.predict import SHARES, Row
+    from panoplan.bench.v1.predict import rows_of
     from panoplan.bench.v1.run import run, write_methods
     from panoplan.bench.v1.scenes import mp3d_fpe_scenes
     from panoplan.bench.v1.store import Store
@@ -86,11 +91,12 @@ def _compare(options: argparse.Namespace) -> None:
         sources = {"dataset": list(mp3d_fpe_scenes(options.root))}
     else:
         sources = {name: list(own) for name, own in _simulated(options, REPORTED_SEEDS).items()}
-    rows = [Row(method, share) for method in options.methods for share in SHARES]
-    workers, store = processes(options.jobs), Store(options.output)
+    rows = rows_of(options.methods)
+    workers, store = _workers(options), Store(options.output)
+    scorers = processes(options.jobs)
     for scenes_of, own in sources.items():
         with progress(scenes_of, quiet=options.quiet) as report:
-            figures = run(own, rows, store, workers, workers, report)
+            figures = run(own, rows, store, workers, scorers, report)
         for path in write_methods(figures, scenes_of, rows, options.output):
             print(path)
         for name, row in figures.items():
@@ -98,24 +104,30 @@ def _compare(options: argparse.Namespace) -> None:
                 if scene["failure"] is not None:
                     print(f"{scene['scene']}, {name}: failed: {scene['failure']}")
         if options.pictures is not None:
-            # The last method's, from the first 20 % as the paper shows.
-            shown = rows[-len(SHARES)]
+            # The last method's, from the fewest keyframes.
+            shown = next(row for row in rows if row.method == rows[-1].method)
             scenes = figures[shown.name]["scenes"]
             for path in write_pictures(options.pictures, scenes_of, shown, scenes, own, store):
                 print(path)
 
 
 def _study(options: argparse.Namespace, name: str) -> None:
-    from panoplan.bench.parallel import processes
     from panoplan.bench.v1.run import write_figures
     from panoplan.bench.v1.store import Store
     from panoplan.bench.v1.studies import STUDIES
 
-    study, workers = STUDIES[name], processes(options.jobs)
+    study, workers = STUDIES[name], _workers(options)
     for family, own in _simulated(options, study.seeds).items():
         with progress(f"{name}, {family}", quiet=options.quiet) as report:
             figures = study.measure(own, Store(options.output), workers, report)
-        print(write_figures(f"v1-{name}", study.method, family, figures, options.output))
+        print(write_figures(f"v1-{name}", study.row.settings, family, figures, options.output))
+
+
+def _workers(options: argparse.Namespace) -> Workers:
+    from panoplan.bench.cluster import on_ray
+    from panoplan.bench.parallel import processes
+
+    return processes(options.jobs) if options.ray is None else on_ray(options.ray)
 
 
 def _simulated(options: argparse.Namespace, seeds: Sequence[int]) -> dict[str, list[Simulated]]:
@@ -141,8 +153,8 @@ def _seeds(text: str) -> range:
 
 def _methods(text: str) -> tuple[str, ...]:
     methods = tuple(text.split(","))
-    unknown = [name for name in methods if name not in PRESETS]
+    unknown = [name for name in methods if name not in _METHODS]
     if unknown:
-        wanted = ", ".join(PRESETS)
+        wanted = ", ".join(_METHODS)
         raise argparse.ArgumentTypeError(f"found {unknown[0]!r}; expected some of {wanted}")
     return methods

@@ -6,10 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from tests.bench.points.test_baseline import cloud
 from tests.scenes import L_SHAPE, RECTANGLE, walk
 
 from panoplan.bench.parallel import processes
-from panoplan.bench.v1.predict import Row
+from panoplan.bench.v1.predict import Row, rows_of
 from panoplan.bench.v1.run import run, write_methods
 from panoplan.bench.v1.scenes import Folder, Recording, mp3d_fpe_scenes
 from panoplan.bench.v1.store import Store
@@ -193,6 +194,29 @@ def test_a_dataset_of_folders(tmp_path):
     data = json.loads(path.read_text())
     assert (path.name, data["benchmark"]) == ("v1-dataset-paper.json", "v1")
     assert data["figures"]["shares"]["1"] == json.loads(json.dumps(row))
+
+
+def test_the_baseline_needs_a_scan_and_has_one_row(tmp_path):
+    plyfile = pytest.importorskip("plyfile", reason="the extra points is not installed")
+    made = recording(L_SHAPE)
+    numbered = [replace(k, id=str(n + 1)) for n, k in enumerate(made.keyframes)]
+    for scene in ("a", "b"):
+        write_mp3d_fpe(tmp_path / "root" / scene / "0", numbered, made.truth)
+    points = cloud(L_SHAPE)
+    rows = np.zeros(len(points), dtype=[(axis, "f4") for axis in "xyz"])
+    for k, axis in enumerate("xyz"):
+        rows[axis] = points[:, k]
+    element = plyfile.PlyElement.describe(rows, "vertex")
+    plyfile.PlyData([element]).write(tmp_path / "root" / "a" / "0" / "pcl.ply")
+    chosen, rows = mp3d_fpe_scenes(tmp_path / "root"), rows_of(["points"])
+    assert [row.name for row in rows] == ["points-100"]
+    row = ran(chosen, tmp_path / "out", rows=rows)["points-100"]
+    scanned, unscanned = row["scenes"]
+    assert scanned["aligned"]["rooms_70"] == [1, 1, 1]
+    assert "pcl.ply: found nothing" in unscanned["failure"]
+    assert unscanned["aligned"]["rooms_70"] == [0, 1, 0]
+    (path,) = write_methods({"points-100": row}, "dataset", rows, tmp_path)
+    assert json.loads(path.read_text())["settings"]["preset"] == "points"
 
 
 def test_a_folder_has_another_key_when_a_byte_of_it_changes(tmp_path):

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 import time
 import traceback
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import asdict, dataclass
+from typing import Any
 
+from panoplan.bench.points.baseline import PointsConfig, plan_from_points
 from panoplan.bench.v1.scenes import Recording, Source, code_version, digest
-from panoplan.config import PRESETS, Config, override, preset
-from panoplan.errors import PanoplanError
+from panoplan.config import PRESETS, Config, as_dict, override, preset
+from panoplan.errors import InputError, PanoplanError
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
-from panoplan.types.plan import FloorPlan
+from panoplan.geometry.rigid import heading_of
+from panoplan.types.plan import FloorPlan, PlanPose
 
-METHODS = PRESETS
+POINTS = "points"
+"""The baseline from a scan; it needs no scale."""
+METHODS = (POINTS, *PRESETS)
 SHARES = (0.2, 1.0)
 """Share of the keyframes that the scale is recovered from. Source: Table II of the paper."""
 
@@ -26,7 +32,7 @@ class Row:
     """A row of Table II.
 
     Attributes:
-        method: preset.
+        method: of `METHODS`.
         share: of the keyframes that the scale is recovered from, in (0, 1].
     """
 
@@ -40,8 +46,28 @@ class Row:
 
     @property
     def config(self) -> Config:
-        """The preset with this share."""
+        """The preset with this share.
+
+        Raises:
+            ConfigError: of the baseline, which is no preset.
+        """
         return override(preset(self.method), {"scale": {"warmup": self.share}})
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """All settings as plain values, "preset" the method."""
+        if self.method == POINTS:
+            return {"preset": POINTS, **asdict(PointsConfig())}
+        return as_dict(self.config)
+
+
+def rows_of(methods: Sequence[str]) -> list[Row]:
+    """The rows of Table II: each method for each of `SHARES`, the baseline once."""
+    return [
+        Row(method, share)
+        for method in methods
+        for share in (SHARES if method != POINTS else SHARES[-1:])
+    ]
 
 
 @dataclass(frozen=True)
@@ -53,7 +79,11 @@ class Task:
 
     def key(self) -> str:
         """A hash of all that the prediction depends on: scene, settings and code."""
-        return digest(self.source.key(), repr(self.row.config), code_version(*METHOD_CODE))
+        scene = self.source.key()
+        code: tuple[str, ...] = METHOD_CODE
+        if self.row.method == POINTS:
+            scene, code = scene + self.source.scan_key(), (*METHOD_CODE, "bench/points")
+        return digest(scene, repr(self.row.settings), code_version(*code))
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,6 +110,8 @@ def predict(task: Task) -> Prediction:
     Returns:
         As of `made_of`.
     """
+    if task.row.method == POINTS:
+        return made_of_points(task.source)
     return made_of(task.source.open(), task.row.config)
 
 
@@ -94,14 +126,49 @@ def made_of(recording: Recording, config: Config) -> Prediction:
         The plan, or why there is none: a scene that a method fails on counts, it does not stop the
         benchmark.
     """
-    started = time.process_time()
     walk = Walk(recording.trajectory_unit, recording.camera_height_m, len(recording.keyframes))
-    try:
+
+    def plan() -> FloorPlan:
         estimator = FloorPlanEstimator(config, walk)
         for keyframe in recording.keyframes:
             estimator.update(keyframe)
         estimator.finish()
-        plan = estimator.plan()
+        return estimator.plan()
+
+    return _timed(plan)
+
+
+def made_of_points(source: Source) -> Prediction:
+    """What the baseline makes of a scene's scan.
+
+    Args:
+        source: the scene; its scan is in the world of the true poses, and tells them.
+
+    Returns:
+        As of `made_of`.
+    """
+    walked = source.open().truth.trajectory
+    cameras = (
+        ()
+        if walked is None
+        else tuple(
+            PlanPose(label, translation[[0, 2]], heading_of(rotation), None)
+            for label, translation, rotation in zip(
+                walked.labels, walked.translations, walked.rotations, strict=True
+            )
+        )
+    )
+    try:
+        points = source.scan()
+    except InputError as error:
+        return Prediction(None, str(error), 0.0)
+    return _timed(lambda: plan_from_points(points, cameras, PointsConfig()))
+
+
+def _timed(make: Callable[[], FloorPlan]) -> Prediction:
+    started = time.process_time()
+    try:
+        plan = make()
     except Exception as error:
         return Prediction(None, _told(error), time.process_time() - started)
     return Prediction(plan, None, time.process_time() - started)

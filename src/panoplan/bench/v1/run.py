@@ -14,7 +14,6 @@ from panoplan.bench.v1.predict import Row, Task, predict
 from panoplan.bench.v1.scenes import Recording, Source
 from panoplan.bench.v1.score import score, summary
 from panoplan.bench.v1.store import Store
-from panoplan.config import preset
 from panoplan.formats.atomic import write_text
 from panoplan.pipeline import Progress
 
@@ -77,20 +76,24 @@ def write_methods(
     """
     paths = []
     for method in dict.fromkeys(row.method for row in rows):
-        own = {f"{row.share:g}": figures[row.name] for row in rows if row.method == method}
-        told = {"shares": own}
-        paths.append(write_figures("v1", method, scenes_of, told, folder))
+        own = [row for row in rows if row.method == method]
+        told = {"shares": {f"{row.share:g}": figures[row.name] for row in own}}
+        paths.append(write_figures("v1", own[0].settings, scenes_of, told, folder))
     return paths
 
 
 def write_figures(
-    benchmark: str, method: str, scenes_of: str, figures: dict[str, Any], folder: Path
+    benchmark: str,
+    settings: dict[str, Any],
+    scenes_of: str,
+    figures: dict[str, Any],
+    folder: Path,
 ) -> Path:
     """Writes figures with settings, commit and machine, as the tables are made from.
 
     Args:
         benchmark: "v1", or "v1-" and a study's name.
-        method: preset that they are of.
+        settings: of the method, "preset" its name.
         scenes_of: what the scenes are of.
         figures: plain values.
         folder: where to.
@@ -98,8 +101,8 @@ def write_figures(
     Returns:
         The file, `<benchmark>-<scenes_of>-<method>.json`.
     """
-    path = folder / f"{benchmark}-{scenes_of}-{method}.json"
-    data = record(benchmark, preset(method), {"scenes_of": scenes_of, **figures})
+    path = folder / f"{benchmark}-{scenes_of}-{settings['preset']}.json"
+    data = record(benchmark, settings, {"scenes_of": scenes_of, **figures})
     write_text(path, json.dumps(data, indent=1) + "\n")
     return path
 

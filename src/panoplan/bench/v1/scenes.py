@@ -10,12 +10,15 @@ from pathlib import Path
 from typing import Literal, Protocol
 
 import panoplan
+from panoplan.bench.points.scan import scanned
 from panoplan.datasets.detect import open_scene, read_truth
 from panoplan.datasets.mp3d_fpe import version_folder
 from panoplan.errors import InputError
+from panoplan.formats.ply import read_ply_points
 from panoplan.simulate.families import simulate_scene
 from panoplan.simulate.noise import NoiseModel
 from panoplan.simulate.scene import Grade, SimulatedScene
+from panoplan.types.arrays import FloatArray
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.truth import GroundTruth
 
@@ -44,6 +47,9 @@ class Recording:
         return replace(self, keyframes=tuple(replace(k, layout=None) for k in self.keyframes))
 
 
+_CLOUD = "pcl.ply"
+
+
 class Source(Protocol):
     """A scene that can be had, here or on another machine."""
 
@@ -56,6 +62,12 @@ class Source(Protocol):
 
     def open(self) -> Recording:
         """The recording."""
+
+    def scan(self) -> FloatArray:
+        """(N, 3) a scan of the scene in the true world; raises InputError where there is none."""
+
+    def scan_key(self) -> str:
+        """A hash of all that the scan depends on."""
 
 
 @dataclass(frozen=True)
@@ -88,6 +100,15 @@ class Simulated:
     def simulated(self) -> SimulatedScene:
         """The scene with all that is known of how it was made."""
         return simulate_scene(self.family, self.seed, self.grade)
+
+    def scan(self) -> FloatArray:
+        """A scan without drift, of all that can be seen."""
+        scene = self.simulated()
+        return scanned(scene.building, scene.camera_height_m, self.seed)
+
+    def scan_key(self) -> str:
+        """The scene's."""
+        return self.key()
 
 
 def recorded(scene: SimulatedScene) -> Recording:
@@ -132,6 +153,14 @@ class Folder:
         scene = open_scene(self.path)
         return Recording(scene.keyframes, read_truth(self.path), scene.camera_height_m, None)
 
+    def scan(self) -> FloatArray:
+        """The points of pcl.ply."""
+        return read_ply_points(self.path / _CLOUD)
+
+    def scan_key(self) -> str:
+        """Of the bytes of pcl.ply."""
+        return _digest_of(self.path, self.path.glob(_CLOUD))
+
 
 def mp3d_fpe_scenes(root: Path) -> list[Folder]:
     """All versions of all scenes of the dataset.
@@ -174,5 +203,6 @@ def _digest_of(root: Path, files: Iterable[Path]) -> str:
     made = hashlib.sha256()
     for file in sorted(files):
         made.update(str(file.relative_to(root)).encode() + b"\0")
-        made.update(hashlib.sha256(file.read_bytes()).digest())
+        with file.open("rb") as stream:
+            made.update(hashlib.file_digest(stream, "sha256").digest())
     return made.hexdigest()

@@ -28,12 +28,12 @@ class Study:
     Attributes:
         measure: of scenes, what is kept, workers and progress.
         seeds: of the scenes, where none are asked for.
-        method: preset whose settings stand beside the figures.
+        row: whose settings stand beside the figures.
     """
 
     measure: Callable[[Sequence[Simulated], Store, Workers, Progress], dict[str, Any]]
     seeds: Sequence[int]
-    method: str
+    row: Row
 
 
 def _of_row(
@@ -45,8 +45,8 @@ def _of_row(
 
 
 STUDIES = {
-    "ispa": Study(shaped, REPORTED_SEEDS[:10], ROW.method),
-    "scale": Study(scaled, REPORTED_SEEDS, _DEFAULT.method),
-    "sweeps": Study(partial(_of_row, swept), REPORTED_SEEDS[::4][:6], _DEFAULT.method),
-    "ablation": Study(partial(_of_row, ablated), TUNING_SEEDS, _DEFAULT.method),
+    "ispa": Study(shaped, REPORTED_SEEDS[:10], ROW),
+    "scale": Study(scaled, REPORTED_SEEDS, _DEFAULT),
+    "sweeps": Study(partial(_of_row, swept), REPORTED_SEEDS[::4][:6], _DEFAULT),
+    "ablation": Study(partial(_of_row, ablated), TUNING_SEEDS, _DEFAULT),
 }
