@@ -32,6 +32,13 @@ def test_an_input_error_in_another_process_is_one_here():
         mapped(mp3d_fpe_scenes, [Path("nowhere")] * 2, processes(2), lambda *_: None)
 
 
+def test_processes_have_one_thread_each_and_this_one_as_before(monkeypatch):
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    names = ["OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"]
+    assert mapped(os.getenv, names, processes(2), lambda *_: None) == ["1", "1"]
+    assert os.environ["OMP_NUM_THREADS"] == "7"
+
+
 def test_a_process_that_dies_is_told():
     with pytest.raises(WorkerLostError, match="the same command goes on"):
         mapped(os._exit, [1, 1], processes(2), lambda *_: None)

@@ -3,15 +3,21 @@
 from __future__ import annotations
 
 import multiprocessing
+import os
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from typing import Protocol, TypeVar
+from unittest.mock import patch
 
 from panoplan.errors import PanoplanError
 
 Work = TypeVar("Work")
 Result = TypeVar("Result")
+
+
+_ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+"""As many threads as processes, for linear algebra that would take all processors in each."""
 
 
 class Workers(Protocol):
@@ -47,7 +53,10 @@ def processes(jobs: int) -> Workers:
             return
         # Fresh processes: forked ones would inherit the threads of the progress display.
         context = multiprocessing.get_context("spawn")
-        with ProcessPoolExecutor(min(jobs, len(work)), mp_context=context) as pool:
+        with (
+            patch.dict(os.environ, _ONE_THREAD),
+            ProcessPoolExecutor(min(jobs, len(work)), mp_context=context) as pool,
+        ):
             place = {pool.submit(function, item): number for number, item in enumerate(work)}
             try:
                 for future in as_completed(place):
