@@ -2,7 +2,8 @@
 
 import pytest
 
-from panoplan.config import preset
+from panoplan.bench import misplaced
+from panoplan.config import Config, preset
 from panoplan.datasets.detect import open_scene, read_truth
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
@@ -59,3 +60,12 @@ def test_floors_of_the_default(
     assert report.doors.recall >= 0.8
     assert report.doors.precision >= 0.8
     assert abs(report.scale_error_percent) <= scale_percent
+
+
+def test_a_room_shifted_by_an_aligner_is_named(shared_data):
+    figures = misplaced.measure_home(
+        shared_data / "zind_000", Config(), 10, lambda done, total, title="": None
+    )
+    assert figures["found"] >= 8
+    assert max(trial["innocent"] for trial in figures["outcome"]) <= 1
+    assert figures["named_where_none_is_shifted"] == 0

@@ -652,6 +652,104 @@ class GroupingConfig:
 
 
 @dataclass(frozen=True)
+class MisplacedConfig:
+    """Cameras of a tour that stand in a wrong place; goes past the paper."""
+
+    min_step_ch: float = _setting(
+        0.6,
+        "Cameras whose median step is shorter are a walk, whose odometry holds them; only the "
+        "stills of a tour are placed one by one.",
+        unit="camera heights",
+        low=0.0,
+        high=100.0,
+    )
+    depth_ch: float = _setting(
+        0.25,
+        "A boundary so deep in another view's free space contradicts it.",
+        unit="camera heights",
+        low=0.01,
+        high=5.0,
+    )
+    reach_ch: float = _setting(
+        4.0, "Ranges beyond it say nothing.", unit="camera heights", low=0.5, high=100.0
+    )
+    innocent_share: float = _setting(
+        0.2,
+        "Up to this share of a boundary lies in the free space of views that stand right, where "
+        "one stops at an opening through which the other looks.",
+        low=0.0,
+        high=1.0,
+    )
+    conflict_share: float = _setting(
+        0.5, "From this share on two views cannot both stand right.", low=0.0, high=1.0
+    )
+    conflict_nats: float = _setting(
+        5.0, "How much two such views speak against their places.", unit="nats", low=0.0, high=100.0
+    )
+    same_door_ch: float = _setting(
+        0.3,
+        "Passages of one room nearer to each other are one.",
+        unit="camera heights",
+        low=0.0,
+        high=2.0,
+    )
+    wall_ch: float = _setting(
+        0.15,
+        "The two sides of a door lie up to so far apart, a thick wall.",
+        unit="camera heights",
+        low=0.0,
+        high=1.0,
+    )
+    door_sigma_ch: float = _setting(
+        0.08,
+        "Standard deviation of where a view sees a door's middle.",
+        unit="camera heights",
+        low=0.005,
+        high=1.0,
+    )
+    met_share: float = _setting(
+        0.6, "Share of doors whose other side is seen, too.", low=0.01, high=0.99
+    )
+    chance: float = _setting(
+        0.05, "Chance that a door finds another side by accident.", low=1e-6, high=1.0
+    )
+    backed_share: float = _setting(
+        0.2,
+        "Share of a room's boundary that has another room's wall right behind it, above which it "
+        "rather stands where it should: usual are 0.5, and 0.05 in a wrong place.",
+        low=0.01,
+        high=0.5,
+    )
+    wall_nats: float = _setting(
+        4.0, "How much such walls speak at most.", unit="nats", low=0.0, high=100.0
+    )
+    near_ch: float = _setting(
+        0.5,
+        "Views that stand wrong by less are left to the adjustment.",
+        unit="camera heights",
+        low=0.0,
+        high=5.0,
+    )
+    search_ch: float = _setting(
+        3.5,
+        "How far views may have been misplaced, to be placed anew.",
+        unit="camera heights",
+        low=0.1,
+        high=100.0,
+    )
+    min_gain: float = _setting(
+        6.0, "Evidence that it takes to doubt where views stand.", unit="nats", low=0.0, high=100.0
+    )
+    margin: float = _setting(
+        4.0,
+        "Evidence for a new place over any other; with less, the views are left out.",
+        unit="nats",
+        low=0.0,
+        high=100.0,
+    )
+
+
+@dataclass(frozen=True)
 class FusionConfig:
     """A room's views fused into one signed distance field; goes past the paper."""
 
@@ -1145,6 +1243,7 @@ class Config:
     orientation: OrientationConfig = field(default_factory=OrientationConfig)
     shape: ShapeConfig = field(default_factory=ShapeConfig)
     levels: LevelsConfig = field(default_factory=LevelsConfig)
+    misplaced: MisplacedConfig = field(default_factory=MisplacedConfig)
     grouping: GroupingConfig = field(default_factory=GroupingConfig)
     fusion: FusionConfig = field(default_factory=FusionConfig)
     outline: OutlineConfig = field(default_factory=OutlineConfig)

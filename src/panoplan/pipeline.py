@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
@@ -107,10 +108,9 @@ def summary(plan: FloorPlan) -> str:
     for room in plan.rooms:
         if room.polygon is None:
             lines.append(f"{room.id}: no shape, {room.failure}")
-    left_out = [s for s in plan.skipped if s.what == "keyframe"]
-    reasons = sorted({s.reason for s in left_out})
+    skipped = Counter((s.what, s.reason) for s in plan.skipped if s.what != "wall")
     lines += [
-        f"{sum(s.reason == reason for s in left_out)} keyframes left out: {reason}"
-        for reason in reasons
+        f"{count} keyframes {'left out' if what == 'keyframe' else 'moved'}: {reason}"
+        for (what, reason), count in sorted(skipped.items())
     ]
     return "\n".join(lines)

@@ -1,3 +1,4 @@
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +12,9 @@ from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.formats.plan_json import plan_to_text
 from panoplan.formats.state import read_state, write_state
+from panoplan.simulate.scene import simulate_flat
 from panoplan.types.events import (
+    CamerasMisplaced,
     KeyframeWaiting,
     RoomOpened,
     RoomShaped,
@@ -228,9 +231,10 @@ def test_a_view_of_parts_of_two_rooms_is_no_third_room(method, event):
     assert [e for e in events if isinstance(e, event)]
     plan = estimator.plan()
     assert len(plan.rooms) == 2
-    assert sorted(k for room in plan.rooms for k in room.keyframes) == sorted(
-        pose.id for pose in plan.trajectory
-    )
+    left_out = [s.keyframe for s in plan.skipped if s.what == "keyframe"]
+    assert set(left_out) <= {"gross"}
+    in_rooms = [k for room in plan.rooms for k in room.keyframes]
+    assert sorted([*in_rooms, *left_out]) == sorted(pose.id for pose in plan.trajectory)
 
 
 def test_a_walls_sigma_and_a_pillar_reach_the_plan():
@@ -242,3 +246,27 @@ def test_a_walls_sigma_and_a_pillar_reach_the_plan():
     assert Polygon(hole).symmetric_difference(Polygon(pillar)).area < 0.02
     assert not Polygon(hole).exterior.is_ccw
     assert all(wall.sigma is not None and 0.001 < wall.sigma < 0.05 for wall in room.walls)
+
+
+def test_misplaced_stills_are_moved_in_the_plan_and_told():
+    scene = simulate_flat(12, "mild", stills=True, metres_per_su=1.0)
+    corridor = {k for k, room in enumerate(scene.keyframe_rooms) if room == 0}
+    moved = [
+        replace(k, pose=Pose(k.pose.rotation, k.pose.translation + [1.9, 0, 1.8]))
+        if n in corridor
+        else k
+        for n, k in enumerate(scene.keyframes)
+    ]
+    walk_of = Walk("m", scene.camera_height_m, len(moved))
+    estimator = FloorPlanEstimator(Config(), walk_of)
+    for keyframe in moved:
+        estimator.update(keyframe)
+    (event,) = (e for e in estimator.finish() if isinstance(e, CamerasMisplaced))
+    names = {scene.keyframes[k].id for k in corridor}
+    assert set(event.keyframes) == names
+    plan = estimator.plan()
+    assert {s.keyframe for s in plan.skipped if s.what == "pose"} == names
+    for pose, keyframe in zip(plan.trajectory, scene.keyframes, strict=True):
+        assert math.dist(pose.position, keyframe.pose.translation[[0, 2]]) < 0.2
+    # Nothing is left to be found.
+    assert not estimator.finish()

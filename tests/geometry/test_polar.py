@@ -3,6 +3,7 @@ import pytest
 
 from panoplan.geometry.polar import (
     at_boundaries,
+    intrusions,
     mutual_overlaps,
     passing_votes,
     range_profile,
@@ -115,3 +116,18 @@ def test_overlap_of_two_squares_over_the_smaller():
     half_off = mutual_overlaps(moved, profiles[[0, 0, 0]], 10.0, 0.02)
     assert half_off[0, 1] == pytest.approx(0.5 * 0.85, abs=0.02)
     assert (common == common.T).all()
+
+
+def test_intrusion_of_one_circle_into_another():
+    """Of the unit circle, what lies within 0.75 of (1.5, 0): cos θ > (3.25 − 0.5625) / 3."""
+    cameras = np.array([[0.0, 0.0], [1.5, 0.0]])
+    profiles = np.ones((2, 1024))
+    sigmas = np.full((2, 1024), 0.01)
+    there = (cameras, profiles, sigmas)
+    shares = intrusions(*there, *there, 0.25, 4.0)
+    expected = np.arccos((3.25 - 0.75**2) / 3) / np.pi
+    np.testing.assert_allclose(shares, [[0, expected], [expected, 0]], atol=2e-3)
+    # Not where it may be the ranges' error, nor where they say nothing.
+    assert intrusions(cameras, profiles, 10 * sigmas, *there, 0.25, 4.0)[0, 1] < expected
+    assert not intrusions(cameras, profiles, 50 * sigmas, *there, 0.25, 4.0).any()
+    assert not intrusions(*there, *there, 0.25, 0.9).any()

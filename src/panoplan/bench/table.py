@@ -26,7 +26,7 @@ def update(page: Path, folder: Path) -> bool:
     Args:
         page: Markdown with `<!-- measured: NAMES -->` and `<!-- end of measured -->`; the names,
             with commas, are of the tables that come between: buildings,
-            methods, shapes, scale, sweeps, causes, flats, home, runtime.
+            methods, shapes, scale, sweeps, causes, flats, home, misplaced, runtime.
         folder: of the benchmark files.
 
     Returns:
@@ -73,6 +73,7 @@ def updated(text: str, folder: Path, page: Path) -> str:
         "causes": v1.causes,
         "flats": _flats,
         "home": _home,
+        "misplaced": _misplaced,
         "runtime": _runtime,
     }
 
@@ -170,6 +171,25 @@ def _home(files: list[dict[str, Any]]) -> str:
         "true poses, unaligned."
     )
     return f"{title}\n\n{table(heads, rows)}"
+
+
+def _misplaced(files: list[dict[str, Any]]) -> str:
+    rows = [
+        [
+            f["scene"],
+            str(f["trials"]),
+            str(f["found"]),
+            str(f["more_than_one_innocent"]),
+            str(f["moved_back"]),
+            str(f["named_where_none_is_shifted"]),
+        ]
+        for f in (data["figures"] for data in _of(files, "misplaced"))
+    ]
+    if not rows:
+        return ""
+    heads = ["tour", "trials", "all shifted cameras named", "more than one innocent named",
+             "moved back", "cameras named with none shifted"]  # fmt: skip
+    return f"One room's cameras of a photo tour shifted by 2.6 m.\n\n{table(heads, rows)}"
 
 
 def _runtime(files: list[dict[str, Any]]) -> str:

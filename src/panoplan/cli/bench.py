@@ -19,13 +19,17 @@ def add_parser(commands: Any) -> None:
         "bench",
         help="accuracy and runtime, and tables of them",
         description="v1: the paper's tables on simulated buildings. accuracy: on simulated flats. "
-        "home: on a scene with known truth. runtime: time and memory on a long walk. table: writes "
+        "home: on a scene with known truth. misplaced: one room's cameras of a tour shifted, on "
+        "simulated flats or on a scene. runtime: time and memory on a long walk. table: writes "
         "what they measured into a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
-    parser.add_argument("what", choices=["v1", "accuracy", "home", "runtime", "table"])
-    parser.add_argument("input", nargs="?", type=Path, help="home: the scene; table: the page")
+    parser.add_argument("what", choices=["v1", "accuracy", "home", "misplaced", "runtime", "table"])
+    parser.add_argument(
+        "input", nargs="?", type=Path, help="home, misplaced: the scene; table: the page"
+    )
     parser.add_argument("--flats", type=int, default=20, metavar="N", help="seeds 0 to N-1 a grade")
+    parser.add_argument("--trials", type=int, default=40, metavar="N", help="misplaced: how many")
     parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
     parser.add_argument(
         "--jobs", type=_jobs, default=1, metavar="N", help="v1, accuracy: processes"
@@ -47,7 +51,7 @@ def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     if options.what == "v1":
         return bench_v1.act(options)
-    from panoplan.bench import accuracy, home, runtime, table
+    from panoplan.bench import accuracy, home, misplaced, runtime, table
     from panoplan.bench.record import record
     from panoplan.config import as_dict
 
@@ -66,6 +70,12 @@ def act(options: argparse.Namespace) -> int:
             )
         elif options.what == "home":
             figures = home.measure(options.input, config)
+        elif options.what == "misplaced":
+            trials = max(1, options.trials)
+            if options.input is None:
+                figures = misplaced.measure_flats(range(trials), config, report)
+            else:
+                figures = misplaced.measure_home(options.input, config, trials, report)
         else:
             figures = runtime.measure(config, report)
     text = json.dumps(record(options.what, as_dict(config), figures), indent=1) + "\n"

@@ -15,8 +15,10 @@ from panoplan.stages import rooms
 from panoplan.stages.plan.adjust import Stretch, adjust
 from panoplan.stages.plan.apertures import apertures, stretches
 from panoplan.stages.plan.floorplan import plan_rooms
+from panoplan.stages.plan.misplaced import misplaced
 from panoplan.stages.plan.partition import facing_walls, partition
-from panoplan.types.events import Event, RoomShaped, RoomsRegrouped
+from panoplan.types.events import CamerasMisplaced, Event, RoomShaped, RoomsRegrouped
+from panoplan.types.plan import Skipped
 from panoplan.types.room import RoomDensity, RoomShape, WallStretch
 from panoplan.types.view import CorrectedLayouts, Correction, RegisteredLayout
 
@@ -62,13 +64,14 @@ def settle_level(state: State, level: int, config: Config) -> tuple[State, tuple
     Returns:
         What is known now, and what happened.
     """
-    there = [k for k, room in enumerate(state.rooms) if room.level == level]
+    there = _on(state, level)
     if not there:
         return state, ()
     keyframes = _keyframes(state, there)
-    now = state
+    now, replaced = _placed_anew(state, there, config)
     # The outlines of rooms that have been left are enough to begin with.
-    begun = there if not config.adjust.rounds else [k for k in there if state.rooms[k].stale]
+    all_anew = bool(replaced) or not config.adjust.rounds
+    begun = [k for k in _on(now, level) if all_anew or now.rooms[k].stale]
     if begun:
         now = _regrouped(now, _keyframes(state, begun), config)
     scale = state.scale
@@ -78,11 +81,62 @@ def settle_level(state: State, level: int, config: Config) -> tuple[State, tuple
         if number and moved < _MOVED_CH:
             break
         now = _regrouped(now, keyframes, config, keep=number > 0)
-    return _settled(state, now, keyframes, config)
+    now, told = _settled(state, now, keyframes, config)
+    return now, (*replaced, *told)
 
 
 _MOVED_CH = 0.003
 """Corrections that move no camera and no wall by more than this, half a centimetre, are done."""
+
+
+def _on(state: State, level: int) -> list[int]:
+    """The rooms of a level."""
+    return [k for k, room in enumerate(state.rooms) if room.level == level]
+
+
+def _placed_anew(
+    state: State, chosen: Sequence[int], config: Config
+) -> tuple[State, tuple[Event, ...]]:
+    """Misplaced cameras of a tour moved to where their doors are, or left out."""
+    views = _views(state, chosen)
+    events: list[Event] = []
+    # None for a view that is left out.
+    moved: dict[int, RegisteredLayout | None] = {}
+    cameras = list(state.cameras)
+    skipped = list(state.skipped)
+    for item in misplaced(views, config.misplaced, config.grouping):
+        names = tuple(views[k].keyframe for k in item.members)
+        events.append(CamerasMisplaced(names, item.shift))
+        for view in (views[k] for k in item.members):
+            camera = cameras[view.index]
+            if item.shift is None:
+                moved[view.index] = None
+                cameras[view.index] = replace(camera, room=None)
+                skipped.append(Skipped(view.keyframe, "keyframe", _CONTRADICTED))
+            else:
+                moved[view.index] = Correction(item.shift).apply(view)
+                there = camera.position_su + np.array(item.shift) / state.ch_per_su
+                cameras[view.index] = replace(camera, position_su=there)
+                skipped.append(Skipped(view.keyframe, "pose", _ELSEWHERE))
+    if not events:
+        return state, ()
+    rooms = []
+    for room in state.rooms:
+        own = [moved.get(view.index, view) for view in room.views]
+        rooms.append(replace(room, views=tuple(view for view in own if view is not None)))
+    current = None if state.current is None else state.rooms[state.current].number
+    kept = tuple(room for room in rooms if room.views)
+    return replace(
+        state,
+        rooms=kept,
+        current=next((k for k, room in enumerate(kept) if room.number == current), None),
+        cameras=tuple(cameras),
+        skipped=tuple(skipped),
+    ), tuple(events)
+
+
+_CONTRADICTED = "misplaced: its walls stand where others see none, and no other place is certain"
+_ELSEWHERE = "misplaced: its doors are elsewhere, so it was placed there"
 
 
 def _settled(

@@ -308,6 +308,69 @@ def _at_boundaries(cameras, profiles, sines, cosines, reach, limit, found):
                 break
 
 
+def intrusions(
+    cameras: FloatArray,
+    profiles: FloatArray,
+    sigmas: FloatArray,
+    into: FloatArray,
+    into_profiles: FloatArray,
+    into_sigmas: FloatArray,
+    depth: float,
+    reach: float,
+) -> FloatArray:
+    """How much of each view's boundary lies in the free space of each other one.
+
+    Args:
+        cameras: (V, 2) positions.
+        profiles: (V, B) ranges as `range_profile` gives them, NaN where unknown.
+        sigmas: (V, B) their standard deviations.
+        into: (U, 2) positions of the other views.
+        into_profiles: (U, B).
+        into_sigmas: (U, B).
+        depth: what lies less deep does not count, nor what lies within three standard deviations.
+        reach: ranges beyond it say nothing.
+
+    Returns:
+        (V, U) share of the view's known directions, 0-1.
+    """
+    shares = np.zeros((len(cameras), len(into)))
+    bins = profiles.shape[1]
+    angles = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
+    rays = np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    _intrusions(
+        cameras, profiles, sigmas, into, into_profiles, into_sigmas, rays, depth, reach, shares
+    )
+    return shares
+
+
+@njit(cache=True)
+def _intrusions(
+    cameras, profiles, sigmas, into, into_profiles, into_sigmas, rays, depth, reach, shares
+):
+    bins = profiles.shape[1]
+    for v in range(cameras.shape[0]):
+        known = 0
+        for b in range(bins):
+            r = profiles[v, b]
+            if not r < reach:
+                continue
+            known += 1
+            px, py = cameras[v, 0] + r * rays[b, 0], cameras[v, 1] + r * rays[b, 1]
+            for u in range(into.shape[0]):
+                x, y = px - into[u, 0], py - into[u, 1]
+                away = np.sqrt(x * x + y * y)
+                if away > reach:
+                    continue
+                at = int((_heading(x, y) + np.pi) * bins / (2 * np.pi)) % bins
+                inside = into_profiles[u, at] - away
+                if not inside > depth:
+                    continue
+                if inside * inside > 9 * (sigmas[v, b] ** 2 + into_sigmas[u, at] ** 2):
+                    shares[v, u] += 1
+        for u in range(into.shape[0]):
+            shares[v, u] /= max(1, known)
+
+
 def mutual_overlaps(
     cameras: FloatArray, profiles: FloatArray, radius: float, cell: float
 ) -> FloatArray:

@@ -80,6 +80,20 @@ class RoomsRegrouped:
     gone: tuple[str, ...]
 
 
+@dataclass(frozen=True)
+class CamerasMisplaced:
+    """Cameras of a tour do not stand where they were said to.
+
+    Attributes:
+        keyframes: their ids.
+        shift: (x, y) by which they were moved, walk frame, camera heights; None where they were
+            left out.
+    """
+
+    keyframes: tuple[str, ...]
+    shift: tuple[float, float] | None
+
+
 @dataclass(frozen=True, eq=False)
 class RoomShaped:
     """A room's shape was found (or not), when the camera left it or at the end.
@@ -104,5 +118,6 @@ Event = (
     | KeyframePlaced
     | RoomsJoined
     | RoomsRegrouped
+    | CamerasMisplaced
     | RoomShaped
 )

@@ -157,13 +157,14 @@ class Skipped:
 
     Attributes:
         keyframe: id.
-        what: "keyframe" or "wall".
+        what: "keyframe", "wall", or "pose": the keyframe is in the plan, yet not where it was said
+            to be.
         reason: why, in words.
         count: how many times.
     """
 
     keyframe: str
-    what: Literal["keyframe", "wall"]
+    what: Literal["keyframe", "wall", "pose"]
     reason: str
     count: int = 1
 
