@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -71,7 +72,8 @@ def step(state: State, keyframe: Keyframe, config: Config) -> tuple[State, tuple
         return state, (KeyframeSkipped(keyframe.id, reason),)
     if state.scale is not None:
         state, events = _on_level(state, view, config)
-        return compose(state, config), events
+        state, left = _leave(state, events, config)
+        return compose(state, config), (*events, *left)
     state = replace(state, waiting=(*state.waiting, view))
     waiting: Event = KeyframeWaiting(keyframe.id, len(state.waiting))
     state, frozen = _warm_up(state, config)
@@ -86,7 +88,7 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
     """
     events: list[Event] = []
     if state.scale is None and state.waiting:
-        state, told = _freeze(state, _estimate(state, config), config)
+        state, told = _freeze(state, _estimate(state, config), config, leaving=False)
         events += told
     if state.climbing:
         # A single layout makes no level.
@@ -172,8 +174,9 @@ def _first_level(state: State, ch_per_su: float, config: Config) -> tuple[CastLa
 
 
 def _freeze(
-    state: State, estimate: ScaleEstimate, config: Config
+    state: State, estimate: ScaleEstimate, config: Config, *, leaving: bool = True
 ) -> tuple[State, tuple[Event, ...]]:
+    """Places the layouts that waited; without `leaving` no room is shaped on the way."""
     waiting = state.waiting
     there = _first_level(state, estimate.ch_per_su or 0.0, config)
     if estimate.method == "entropy" and estimate.ch_per_su is not None:
@@ -186,6 +189,9 @@ def _freeze(
     for view in waiting:
         state, told = _on_level(state, view, config)
         events += told
+        if leaving:
+            state, left = _leave(state, told, config)
+            events += left
     return state, tuple(events)
 
 
@@ -294,8 +300,6 @@ def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple
         ),
     )
     state, told = _join(state, config)
-    events += told
-    state, told = _leave(state, config)
     return state, (*events, *told)
 
 
@@ -409,8 +413,10 @@ def _merged(state: State, kept_at: int, gone_at: int, config: Config) -> tuple[S
     return merged, RoomsJoined(room_id(kept.number), room_id(gone.number))
 
 
-def _leave(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
+def _leave(state: State, told: Sequence[Event], config: Config) -> tuple[State, tuple[Event, ...]]:
     """Counts keyframes away from each open room; shapes those that have been left."""
+    if not any(isinstance(event, KeyframePlaced) for event in told):
+        return state, ()
     left = []
     for index, room in enumerate(state.rooms):
         if index == state.current or room.away < 0:
