@@ -649,6 +649,14 @@ class GroupingConfig:
     neck_min_ch: float = _setting(
         0.4, "... and at least so long.", unit="camera heights", low=0.0, high=10.0
     )
+    around_views: int = _setting(
+        200,
+        "Views looked at together when a room is left, beside its own; at the end of the walk all "
+        "are.",
+        unit="views",
+        low=1,
+        high=1_000_000,
+    )
 
 
 @dataclass(frozen=True)
@@ -779,7 +787,11 @@ class FusionConfig:
         high=1.0,
     )
     reach_ch: float = _setting(
-        9.0, "The field ends so far from a camera.", unit="camera heights", low=0.5, high=100.0
+        9.0,
+        "A view says nothing of what is farther away.",
+        unit="camera heights",
+        low=0.5,
+        high=100.0,
     )
     opening_cells: int = _setting(
         5,

@@ -61,22 +61,32 @@ def test_signed_distance_along_the_ray_is_truncated_and_weighted():
     camera = np.array([0.05, 0.05])
     profile = _square_profile(camera, 1.0)
     total, weight = signed_distance_sums(
-        camera[None], profile[None], np.full((1, 1024), 0.3), 0.2, 0.4, 0.5, 0.1, (0, 0), (15, 1)
+        camera[None],
+        profile[None],
+        np.full((1, 1024), 0.3),
+        0.2,
+        0.4,
+        0.5,
+        1.3,
+        0.1,
+        (0, 0),
+        (15, 1),
     )
-    distance = total[:, 0] / weight[:, 0]
+    distance = total[:14, 0] / weight[:14, 0]
     # Cell (i, 0) lies (i + ½)/10 - 0.05 = i/10 in front of the camera, the wall at 0.95.
     assert distance[[0, 7]] == pytest.approx([0.2, 0.2])
     assert distance[[8, 9, 10, 11]] == pytest.approx([0.15, 0.05, -0.05, -0.15], abs=1e-4)
     assert distance[12] == pytest.approx(-0.2)
     assert weight[[0, 11], 0] == pytest.approx([4.0, 4.0])
     assert weight[12, 0] == pytest.approx(2.0)
+    assert weight[[13, 14], 0] == pytest.approx([2.0, 0.0])
 
 
 def test_unknown_headings_say_nothing():
     profile = np.full((1, 64), np.nan)
     profile[0, :32] = 1.0
     total, weight = signed_distance_sums(
-        np.zeros((1, 2)), profile, np.ones((1, 64)), 0.2, 0.0, 0.1, 0.1, (-8, -8), (16, 16)
+        np.zeros((1, 2)), profile, np.ones((1, 64)), 0.2, 0.0, 0.1, 9.0, 0.1, (-8, -8), (16, 16)
     )
     # The first half of the headings, from -π to 0, has x < 0.
     assert (weight[:7] > 0).all()

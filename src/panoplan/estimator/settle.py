@@ -24,7 +24,9 @@ from panoplan.types.view import CorrectedLayouts, Correction, RegisteredLayout
 
 
 def settle_around(state: State, index: int, config: Config) -> tuple[State, tuple[Event, ...]]:
-    """Settles the room that was left, with the rooms that claim some of its floor.
+    """Settles the room that was left, with the rooms that claim most of its floor.
+
+    So many of them that it takes no longer however large the building is.
 
     Args:
         state: what is known.
@@ -35,12 +37,17 @@ def settle_around(state: State, index: int, config: Config) -> tuple[State, tupl
         What is known now, and what happened.
     """
     left = state.rooms[index]
-    near = [
-        k
+    common = {
+        k: rooms.overlap(left.density, other.density)
         for k, other in enumerate(state.rooms)
-        if other is left
-        or (other.level == left.level and rooms.overlap(left.density, other.density) > _TOUCHING)
-    ]
+        if other is not left and other.level == left.level
+    }
+    near, views = [index], len(left.views)
+    for k in sorted(common, key=lambda k: -common[k]):
+        views += len(state.rooms[k].views)
+        if common[k] <= _TOUCHING or views > config.grouping.around_views:
+            break
+        near.append(k)
     keyframes = _keyframes(state, near)
     now = _regrouped(state, keyframes, config)
     if config.adjust.rounds and len(keyframes) >= config.adjust.min_views:

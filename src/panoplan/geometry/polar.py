@@ -126,6 +126,7 @@ def signed_distance_sums(
     truncation: float,
     blur: float,
     beyond_weight: float,
+    radius: float,
     cell: float,
     first_cell: tuple[int, int],
     shape: tuple[int, int],
@@ -143,6 +144,7 @@ def signed_distance_sums(
         blur: standard deviation that every range has at least.
         beyond_weight: factor of the weight where a cell lies farther behind the boundary than the
             truncation, 0-1.
+        radius: a view says nothing of cells farther away.
         cell: cell size; cell (i, j) has its centre at ((i + ½)·cell, (j + ½)·cell).
         first_cell: index of the first cell of the answer.
         shape: cells along both axes.
@@ -158,6 +160,7 @@ def signed_distance_sums(
         1.0 / (sigmas**2 + blur * blur),
         truncation,
         beyond_weight,
+        radius,
         cell,
         first_cell[0],
         first_cell[1],
@@ -189,15 +192,22 @@ def _heading(x, y):
 
 @njit(cache=True)
 def _signed_distance_sums(
-    cameras, profiles, weights, truncation, beyond_weight, cell, i0, j0, total, weight
+    cameras, profiles, weights, truncation, beyond_weight, radius, cell, i0, j0, total, weight
 ):
     bins = profiles.shape[1]
     per_rad = bins / (2 * np.pi)
     for v in range(cameras.shape[0]):
-        for i in range(total.shape[0]):
+        low_i = max(0, int(np.floor((cameras[v, 0] - radius) / cell)) - i0)
+        high_i = min(total.shape[0], int(np.floor((cameras[v, 0] + radius) / cell)) - i0 + 1)
+        low_j = max(0, int(np.floor((cameras[v, 1] - radius) / cell)) - j0)
+        high_j = min(total.shape[1], int(np.floor((cameras[v, 1] + radius) / cell)) - j0 + 1)
+        for i in range(low_i, high_i):
             x = (i0 + i + 0.5) * cell - cameras[v, 0]
-            for j in range(total.shape[1]):
+            for j in range(low_j, high_j):
                 y = (j0 + j + 0.5) * cell - cameras[v, 1]
+                away = np.sqrt(x * x + y * y)
+                if away > radius:
+                    continue
                 place = (_heading(x, y) + np.pi) * per_rad + 0.5
                 right = int(place)
                 share = place - right
@@ -213,7 +223,7 @@ def _signed_distance_sums(
                 elif abs(profiles[v, left] - profiles[v, right]) < truncation:
                     # Interpolated only along one wall, not over a step from one to another.
                     reach = profiles[v, left] * (1 - share) + profiles[v, right] * share
-                distance = reach - np.sqrt(x * x + y * y)
+                distance = reach - away
                 w = weights[v, near]
                 if distance < -truncation:
                     w *= beyond_weight
@@ -295,7 +305,13 @@ def _at_boundaries(cameras, profiles, sines, cosines, reach, limit, found):
             if np.isnan(ahead) or (ahead > away and ahead - away < limit and found[i]):
                 continue
             nearest = np.inf
-            for b in range(bins):
+            # What is nearer than the limit lies within this angle of straight ahead.
+            straight = int((_heading(x, y) + np.pi) * bins / (2 * np.pi))
+            span = bins // 2
+            if away > limit:
+                span = min(span, int(np.arcsin(limit / away) * bins / (2 * np.pi)) + 2)
+            for k in range(straight - span, straight + span + 1):
+                b = k % bins
                 r = profiles[j, b]
                 dx, dy = r * sines[b] - x, r * cosines[b] - y
                 squared = dx * dx + dy * dy

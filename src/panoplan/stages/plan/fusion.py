@@ -103,6 +103,7 @@ def fuse(views: Sights, config: FusionConfig) -> Evidence:
         config.truncation_ch,
         config.blur_ch,
         config.beyond_weight,
+        config.reach_ch,
         config.cell_ch,
         first_cell,
         (int(shape[0]), int(shape[1])),
