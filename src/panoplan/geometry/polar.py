@@ -190,27 +190,47 @@ def _heading(x, y):
     return -angle if x < 0 else angle
 
 
+@njit(cache=True, fastmath=True)
+def _row(x, y0, cell, bins, place, away):
+    """Heading, in profile bins, and distance of cells in a row, without a branch."""
+    for j in range(place.size):
+        y = y0 + j * cell
+        across, along = abs(x), abs(y)
+        z = min(across, along) / max(across, along, 1e-12)
+        q = z * z
+        # As in `_heading`.
+        angle = z * (
+            0.9998660 + q * (-0.3302995 + q * (0.1801410 + q * (-0.0851330 + q * 0.0208351)))
+        )
+        angle = 0.5 * np.pi - angle if across > along else angle
+        angle = np.pi - angle if y < 0 else angle
+        angle = -angle if x < 0 else angle
+        place[j] = (angle + np.pi) * bins / (2 * np.pi)
+        away[j] = np.sqrt(x * x + y * y)
+
+
 @njit(cache=True)
 def _signed_distance_sums(
     cameras, profiles, weights, truncation, beyond_weight, radius, cell, i0, j0, total, weight
 ):
     bins = profiles.shape[1]
-    per_rad = bins / (2 * np.pi)
+    place, away = np.empty(total.shape[1]), np.empty(total.shape[1])
     for v in range(cameras.shape[0]):
         low_i = max(0, int(np.floor((cameras[v, 0] - radius) / cell)) - i0)
         high_i = min(total.shape[0], int(np.floor((cameras[v, 0] + radius) / cell)) - i0 + 1)
-        low_j = max(0, int(np.floor((cameras[v, 1] - radius) / cell)) - j0)
-        high_j = min(total.shape[1], int(np.floor((cameras[v, 1] + radius) / cell)) - j0 + 1)
         for i in range(low_i, high_i):
             x = (i0 + i + 0.5) * cell - cameras[v, 0]
-            for j in range(low_j, high_j):
-                y = (j0 + j + 0.5) * cell - cameras[v, 1]
-                away = np.sqrt(x * x + y * y)
-                if away > radius:
-                    continue
-                place = (_heading(x, y) + np.pi) * per_rad + 0.5
-                right = int(place)
-                share = place - right
+            if abs(x) > radius:
+                continue
+            half = np.sqrt(radius * radius - x * x)
+            low = max(0, int(np.ceil((cameras[v, 1] - half) / cell - 0.5)) - j0)
+            high = min(total.shape[1], int(np.floor((cameras[v, 1] + half) / cell - 0.5)) - j0 + 1)
+            count = max(0, high - low)
+            _row(x, (j0 + low + 0.5) * cell - cameras[v, 1], cell, bins, place[:count], away)
+            for j in range(count):
+                at = place[j] + 0.5
+                right = int(at)
+                share = at - right
                 left = right - 1 if right > 0 else bins - 1
                 right = right if right < bins else 0
                 near = left if share < 0.5 else right
@@ -223,15 +243,15 @@ def _signed_distance_sums(
                 elif abs(profiles[v, left] - profiles[v, right]) < truncation:
                     # Interpolated only along one wall, not over a step from one to another.
                     reach = profiles[v, left] * (1 - share) + profiles[v, right] * share
-                distance = reach - away
+                distance = reach - away[j]
                 w = weights[v, near]
                 if distance < -truncation:
                     w *= beyond_weight
                     distance = -truncation
                 elif distance > truncation:
                     distance = truncation
-                total[i, j] += w * distance
-                weight[i, j] += w
+                total[i, low + j] += w * distance
+                weight[i, low + j] += w
 
 
 def passing_votes(
@@ -423,15 +443,17 @@ _WORD = 64
 @njit(cache=True)
 def _fill_words(cameras, profiles, radius, cell, low, high, starts, words):
     bins = profiles.shape[1]
+    widest = 64 * (high[:, 1] - low[:, 1]).max()
+    place, away = np.empty(widest), np.empty(widest)
     for v in range(cameras.shape[0]):
         width = high[v, 1] - low[v, 1]
         for i in range(low[v, 0], high[v, 0]):
             x = (i + 0.5) * cell - cameras[v, 0]
-            for j in range(64 * low[v, 1], 64 * high[v, 1]):
-                y = (j + 0.5) * cell - cameras[v, 1]
-                r = profiles[v, int((_heading(x, y) + np.pi) * bins / (2 * np.pi)) % bins]
-                if x * x + y * y < min(r, radius) ** 2:
-                    at = starts[v] + (i - low[v, 0]) * width + (j // 64 - low[v, 1])
+            y0 = (64 * low[v, 1] + 0.5) * cell - cameras[v, 1]
+            _row(x, y0, cell, bins, place[: 64 * width], away)
+            for j in range(64 * width):
+                if away[j] < min(profiles[v, int(place[j]) % bins], radius):
+                    at = starts[v] + (i - low[v, 0]) * width + j // 64
                     words[at] |= np.uint64(1) << np.uint64(j % 64)
 
 
