@@ -11,10 +11,11 @@ ODD_NAMES = ("=1+1", "<script>alert(1)</script>", "%%c ^J \\U+0041 {\\b}", "x" *
 
 
 def flat(**fields):
-    """The small flat with the shared wall as thick as it is."""
-    return plan(
-        shared_walls=(SharedWall("shared_01", ("wall_01", "wall_15"), 0.2, True, True),), **fields
-    )
+    """The small flat with the shared wall as thick as it is, and the door in its middle."""
+    faces = ("wall_01", "wall_15")
+    door = Aperture("door_01", np.array([[4.1, 1.0], [4.1, 1.9]]), ("room_01", "room_02"), faces)
+    known = {"shared_walls": (SharedWall("shared_01", faces, 0.2, True, True),), "doors": (door,)}
+    return plan(**{**known, **fields})
 
 
 def two_storeys():

@@ -12,7 +12,8 @@ def test_every_kind_is_written(tmp_path):
     made = export(two_storeys(), list(KINDS), tmp_path / "new" / "out", ExportOptions("Flat"))
     names = [path.name for path in made]
     assert names == [
-        "sheet_1.svg", "sheet_2.svg", "sheet.pdf", "plan.dxf", "plan.geojson", "rooms.csv",
+        "sheet_1.svg", "sheet_2.svg", "sheet.pdf", "plan.dxf", "plan.geojson", "plan.ifc",
+        "plan.glb", "rooms.csv",
     ]  # fmt: skip
     assert sorted(path.name for path in (tmp_path / "new" / "out").iterdir()) == sorted(names)
 

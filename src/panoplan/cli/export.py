@@ -14,7 +14,7 @@ def add_parser(commands: Any) -> None:
     """Adds the command."""
     parser = commands.add_parser(
         "export",
-        help="a plan as drawings, CAD, GeoJSON, room schedule",
+        help="a plan as drawings, CAD, BIM, 3-D model, room schedule",
         description="Writes a metric plan in formats that other programs open.",
         epilog="example: panoplan export plan/plan.json --to pdf,dxf -o plan/export/",
     )
@@ -23,7 +23,7 @@ def add_parser(commands: Any) -> None:
         "--to",
         required=True,
         metavar="KIND,KIND",
-        help="of svg and pdf (sheets in true scale), dxf, geojson, csv (room schedule)",
+        help="of svg and pdf (sheets in true scale), dxf, geojson, ifc, glb, csv (room schedule)",
     )
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
     parser.add_argument("--title", help="of the sheets (default: the name of the plan's folder)")

@@ -62,6 +62,18 @@ def _geojson(plan: FloorPlan, options: ExportOptions) -> Files:
     return {"plan.geojson": plan_geojson(plan, options.anchor)}
 
 
+def _ifc(plan: FloorPlan, options: ExportOptions) -> Files:
+    from panoplan.exporters.ifc import plan_ifc
+
+    return {"plan.ifc": plan_ifc(plan, options.title)}
+
+
+def _glb(plan: FloorPlan, options: ExportOptions) -> Files:
+    from panoplan.exporters.model.glb import plan_glb
+
+    return {"plan.glb": plan_glb(plan)}
+
+
 def _csv(plan: FloorPlan, options: ExportOptions) -> Files:
     from panoplan.exporters.schedule import room_schedule
 
@@ -73,6 +85,8 @@ KINDS: Mapping[str, Callable[[FloorPlan, ExportOptions], Files]] = {
     "pdf": _pdf,
     "dxf": _dxf,
     "geojson": _geojson,
+    "ifc": _ifc,
+    "glb": _glb,
     "csv": _csv,
 }
 """Exporters by the name that the command line knows."""

@@ -1,0 +1,1 @@
+"""Three-dimensional models: the rooms as seen from inside."""
