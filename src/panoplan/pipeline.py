@@ -8,11 +8,13 @@ from typing import Literal, Protocol
 
 from panoplan.config import Config
 from panoplan.datasets.scene import Scene
+from panoplan.editing.apply import apply
 from panoplan.estimator.explain import explain
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.exporters.explain.pictures import FOLDER, forget_explanation, write_explanation
 from panoplan.exporters.pictures import write_plan_pictures
+from panoplan.formats.edits_json import EDITS, read_edits
 from panoplan.formats.run_folder import RunFolder
 from panoplan.types.plan import FloorPlan, Skipped
 
@@ -48,7 +50,8 @@ def run(
 ) -> FloorPlan:
     """Estimates the plan of a scene and writes plan.json, plan.svg, plan.png and log.jsonl.
 
-    The pictures of an earlier explanation in the folder go.
+    The pictures of an earlier explanation in the folder go. Edits in the folder stay, and the
+    pictures show them; plan.json is the estimate.
 
     The walk goes on where an interrupted run with the same input and settings stopped.
 
@@ -79,7 +82,8 @@ def run(
     plan = estimator.plan()
     unread = tuple(Skipped(name, "keyframe", reason) for name, reason in scene.skipped)
     plan = replace(plan, level_rotation=scene.level_rotation, skipped=(*unread, *plan.skipped))
-    write_plan_pictures(folder.path, plan)
+    edited = apply(plan, read_edits(folder.path / EDITS))
+    write_plan_pictures(folder.path, edited.plan)
     if options.explain:
         explanation = explain(estimator.state, scene.keyframes, config)
         write_explanation(
@@ -105,6 +109,8 @@ def summary(plan: FloorPlan) -> str:
         if not scale.converged:
             told.append("it had not settled when the walk ended")
         lines.append("; ".join(told))
+    if plan.metric is not None:
+        lines.append(f"metres by {plan.metric.source}, ± {100 * plan.metric.sigma:.1f} %")
     for room in plan.rooms:
         if room.polygon is None:
             lines.append(f"{room.id}: no shape, {room.failure}")

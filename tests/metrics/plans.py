@@ -5,6 +5,7 @@ import numpy as np
 from panoplan.types.plan import (
     Aperture,
     FloorPlan,
+    MetricScale,
     PlanPose,
     Room,
     ScaleEstimate,
@@ -80,6 +81,7 @@ def plan(rooms=FLAT, cameras=CAMERAS, *, unit="m", names=None, **fields):
             0.5, "entropy", 0.01, (0.1, 2.0), np.array([[0.1, 3.0], [0.5, 1.25]]), False, True, 7
         ),
         "camera_height_m": 1.5 if unit == "m" else None,
+        "metric": MetricScale("camera height", 0.02) if unit == "m" else None,
         "skipped": (Skipped("kf9", "wall", "seen edge-on", 3),),
         "shared_walls": (SharedWall("shared_01", ("wall_02", "wall_03"), 0.12, True, True),),
         "doors": (

@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
+from tests.metrics.plans import square
 
-from panoplan.metrics.walls import wall_error, wall_figures
+from panoplan.metrics.walls import true_wall, wall_error, wall_figures
 from panoplan.types.plan import Wall
 
 SQUARE = np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0]])
@@ -42,3 +43,14 @@ def test_shares_within_the_stated_sigma():
     assert figures.median_cm == pytest.approx(4.0)
     assert figures.within_1_sigma == pytest.approx(1 / 3)
     assert figures.within_2_sigma == pytest.approx(2 / 3)
+
+
+def test_a_true_wall_has_both_corners_where_the_predicted_one_has():
+    outlines = [square(0, 0), square(2.1, 0)]
+    near = Wall("w", np.array([2.1, 0.1]), np.array([1.9, 2.1]))
+    assert true_wall(near, outlines) == pytest.approx(np.array([[2.0, 0.0], [2.0, 2.0]]))
+    # The other face runs the other way.
+    turned = Wall("w", near.b, near.a)
+    assert true_wall(turned, outlines) == pytest.approx(np.array([[2.1, 2.0], [2.1, 0.0]]))
+    short = Wall("w", np.array([2.0, 0.0]), np.array([2.0, 1.6]))
+    assert true_wall(short, outlines) is None

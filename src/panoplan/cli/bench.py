@@ -19,12 +19,15 @@ def add_parser(commands: Any) -> None:
         "bench",
         help="accuracy and runtime, and tables of them",
         description="v1: the paper's tables on simulated buildings. accuracy: on simulated flats. "
-        "home: on a scene with known truth. misplaced: one room's cameras of a tour shifted, on "
-        "simulated flats or on a scene. runtime: time and memory on a long walk. table: writes "
-        "what they measured into a page.",
+        "metric: whether the ± of metres holds. home: on a scene with known truth. misplaced: one "
+        "room's cameras of a tour shifted, on simulated flats or on a scene. runtime: time and "
+        "memory on a long walk. table: writes what they measured into a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
-    parser.add_argument("what", choices=["v1", "accuracy", "home", "misplaced", "runtime", "table"])
+    parser.add_argument(
+        "what",
+        choices=["v1", "accuracy", "metric", "home", "misplaced", "runtime", "table"],
+    )
     parser.add_argument(
         "input", nargs="?", type=Path, help="home, misplaced: the scene; table: the page"
     )
@@ -32,7 +35,7 @@ def add_parser(commands: Any) -> None:
     parser.add_argument("--trials", type=int, default=40, metavar="N", help="misplaced: how many")
     parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
     parser.add_argument(
-        "--jobs", type=_jobs, default=1, metavar="N", help="v1, accuracy: processes"
+        "--jobs", type=_jobs, default=1, metavar="N", help="v1, accuracy, metric: processes"
     )
     parser.add_argument(
         "--results",
@@ -51,7 +54,7 @@ def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     if options.what == "v1":
         return bench_v1.act(options)
-    from panoplan.bench import accuracy, home, misplaced, runtime, table
+    from panoplan.bench import accuracy, home, metric, misplaced, runtime, table
     from panoplan.bench.record import record
     from panoplan.config import as_dict
 
@@ -68,6 +71,9 @@ def act(options: argparse.Namespace) -> int:
             figures: Any = accuracy.measure(
                 seeds, config, report, metric=options.metric, jobs=options.jobs
             )
+        elif options.what == "metric":
+            seeds = range(max(1, options.flats))
+            figures = metric.measure(seeds, config, report, jobs=options.jobs)
         elif options.what == "home":
             figures = home.measure(options.input, config)
         elif options.what == "misplaced":

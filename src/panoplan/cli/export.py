@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -49,7 +50,7 @@ def add_parser(commands: Any) -> None:
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     from panoplan.exporters.export import ExportOptions, export
-    from panoplan.formats.plan_json import read_plan
+    from panoplan.formats.edits_json import read_edited
 
     kinds = [kind for kind in options.to.lower().split(",") if kind]
     north = None if options.north is None else math.radians(_finite("--north", options.north))
@@ -59,7 +60,10 @@ def act(options: argparse.Namespace) -> int:
         paper=options.paper,
         anchor=_anchor(options.anchor, north),
     )
-    for path in export(read_plan(options.plan), kinds, options.output, told):
+    edited = read_edited(options.plan)
+    for lost in edited.lost:
+        print(f"panoplan: edit not applied: {lost}", file=sys.stderr)
+    for path in export(edited.plan, kinds, options.output, told):
         print(path)
     return 0
 

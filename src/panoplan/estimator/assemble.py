@@ -19,6 +19,7 @@ from panoplan.types.plan import (
     Aperture,
     ApertureKind,
     FloorPlan,
+    MetricScale,
     PlanPose,
     Room,
     ScaleEstimate,
@@ -130,6 +131,7 @@ def assemble(state: State, config: Config) -> FloorPlan:
     )
     return FloorPlan(
         unit=unit,
+        metric=_metric(state, scale.sigma),
         level_rotation=np.eye(3),
         scale=scale,
         camera_height_m=length * state.median_height if unit == "m" else None,
@@ -143,6 +145,24 @@ def assemble(state: State, config: Config) -> FloorPlan:
         settings=as_dict(config),
         version=__version__,
     )
+
+
+def _metric(state: State, scale_sigma: float | None) -> MetricScale | None:
+    """Where the metres come from, as `plan_frame` has it, and how sure they are."""
+    if state.walk.trajectory_unit == "m" and state.ch_per_su:
+        own = _COMMON_SIGMA if scale_sigma is None else scale_sigma
+        return MetricScale("trajectory", own)
+    height = state.walk.camera_height_m
+    if height is None:
+        return None
+    return MetricScale("camera height", float(np.hypot(_HEIGHT_SIGMA_M / height, _COMMON_SIGMA)))
+
+
+_HEIGHT_SIGMA_M = 0.01
+"""How well people know the height of their camera."""
+
+_COMMON_SIGMA = 0.01
+"""Relative error of size that the layouts of a whole walk have in common: on simulated flats."""
 
 
 def _joints(

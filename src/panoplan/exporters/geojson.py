@@ -85,6 +85,8 @@ def plan_geojson(plan: FloorPlan, anchor: Anchor | None = None) -> bytes:
         "panoplan": {
             "coordinates": "metres of the plan frame" if anchor is None else "WGS 84",
             "area_rule": AREA_RULE,
+            "metres_by": None if plan.metric is None else plan.metric.source,
+            "scale_sigma": None if plan.metric is None else round(plan.metric.sigma, 6),
             "version": printable(plan.version),
         },
         "features": features,

@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import functools
 import json
 import re
-import sys
-from collections.abc import Iterable
-from importlib import resources
 from pathlib import Path
 from typing import Any
 
@@ -15,12 +11,14 @@ import numpy as np
 
 from panoplan.errors import InputError
 from panoplan.formats.atomic import write_text
+from panoplan.formats.schema import check, not_finite
 from panoplan.formats.sequence import read_json
 from panoplan.geometry.polygons import signed_area
 from panoplan.types.arrays import FloatArray, frozen_array
 from panoplan.types.plan import (
     Aperture,
     FloorPlan,
+    MetricScale,
     PlanPose,
     Room,
     ScaleEstimate,
@@ -37,7 +35,6 @@ _AXES = (
     "plan [x, y] = [X, Z] of the trajectory's level world times the scale; polygons run "
     "counter-clockwise in it; heading in rad from +y towards +x"
 )
-_LARGEST = sys.float_info.max
 _NUMBER_LIST = re.compile(r"\[\n\s+((?:-?[0-9.eE+-]+,?\s+)+)\]")
 
 
@@ -58,11 +55,7 @@ def read_plan(path: Path) -> FloorPlan:
             that is not finite.
     """
     data = read_json(path)
-    _refuse_newer(data, path)
-    _validate(data, path)
-    where = _not_finite(data, "$")
-    if where is not None:
-        raise InputError(f"{path}, {where}", "NaN or infinity", "a finite number")
+    check(data, path, "plan.schema.json", SCHEMA, "a plan")
     return plan_from_dict(data)
 
 
@@ -73,7 +66,7 @@ def plan_to_text(plan: FloorPlan) -> str:
         InputError: the plan holds NaN or infinity.
     """
     data = plan_to_dict(plan)
-    where = _not_finite(data, "$")
+    where = not_finite(data, "$")
     if where is not None:
         raise InputError(f"plan, {where}", "NaN or infinity", "a finite number")
     text = json.dumps(data, ensure_ascii=False, allow_nan=False, indent=1)
@@ -94,6 +87,11 @@ def plan_to_dict(plan: FloorPlan) -> dict[str, Any]:
         "unit": plan.unit,
         "frame": {"axes": _AXES, "level_rotation": _numbers(plan.level_rotation, 12)},
         "camera_height_m": _factor(plan.camera_height_m),
+        "metric": (
+            None
+            if plan.metric is None
+            else {"source": plan.metric.source, "sigma": _factor(plan.metric.sigma)}
+        ),
         "scale": {
             "ch_per_su": _factor(scale.ch_per_su),
             "method": scale.method,
@@ -154,6 +152,7 @@ def plan_from_dict(data: dict[str, Any]) -> FloorPlan:
             search_range=None if search_range is None else (search_range[0], search_range[1]),
         ),
         camera_height_m=data["camera_height_m"],
+        metric=None if data["metric"] is None else MetricScale(**data["metric"]),
         rooms=tuple(_room_from_dict(room) for room in data["rooms"]),
         trajectory=tuple(
             PlanPose(p["id"], _array(p["position"]), p["heading"], p["room"])
@@ -258,42 +257,7 @@ def _sorted(value: Any) -> Any:
     return [_sorted(item) for item in value] if isinstance(value, list | tuple) else value
 
 
-def _not_finite(value: Any, where: str) -> str | None:
-    """JSON path of the first number that is not finite, or None."""
-    items: Iterable[tuple[str, Any]] = ()
-    if isinstance(value, int | float) and not -_LARGEST <= value <= _LARGEST:
-        return where
-    if isinstance(value, dict):
-        items = ((f"{where}.{key}", item) for key, item in value.items())
-    elif isinstance(value, list):
-        items = ((f"{where}[{k}]", item) for k, item in enumerate(value))
-    return next((found for path, item in items if (found := _not_finite(item, path))), None)
-
-
 def _array(values: Any) -> FloatArray:
     array = np.asarray(values, dtype=np.float64)
     array.setflags(write=False)
     return array
-
-
-@functools.cache
-def _validator() -> Any:
-    from jsonschema import Draft202012Validator
-
-    text = resources.files("panoplan.formats").joinpath("plan.schema.json").read_text("utf-8")
-    return Draft202012Validator(json.loads(text))
-
-
-def _refuse_newer(data: Any, path: Path) -> None:
-    version = data.get("schema") if isinstance(data, dict) else None
-    if isinstance(version, int) and version > SCHEMA:
-        expected = f"a plan of schema {SCHEMA}: a newer panoplan reads it"
-        raise InputError(f"{path}, $.schema", f"schema {str(version)[:20]}", expected)
-
-
-def _validate(data: Any, path: Path) -> None:
-    from jsonschema.exceptions import best_match
-
-    error = best_match(_validator().iter_errors(data))
-    if error is not None:
-        raise InputError(f"{path}, {error.json_path}", error.message[:200], "a plan of schema 1")

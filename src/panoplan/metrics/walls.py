@@ -70,6 +70,27 @@ def wall_figures(pairs: Sequence[tuple[FloatArray, Sequence[Wall]]]) -> WallFigu
     )
 
 
+SAME_CORNER_M = 0.3
+"""A true corner farther away than this is another one."""
+
+
+def true_wall(wall: Wall, outlines: Sequence[FloatArray]) -> FloatArray | None:
+    """The true wall whose two corners both are those of a predicted one.
+
+    Args:
+        wall: predicted, metres.
+        outlines: (N, 2) of the true rooms, counter-clockwise.
+
+    Returns:
+        (2, 2) from corner to corner, or None where no true wall begins and ends within 0.3 m of
+        where the predicted one does.
+    """
+    edges = np.concatenate([np.stack([o, np.roll(o, -1, axis=0)], axis=1) for o in outlines])
+    apart = np.hypot(*np.moveaxis(edges - np.array([wall.a, wall.b]), -1, 0)).max(axis=1)
+    nearest = int(np.argmin(apart))
+    return edges[nearest] if apart[nearest] <= SAME_CORNER_M else None
+
+
 def wall_error(wall: Wall, outline: FloatArray) -> float | None:
     """How far a wall lies outside the true one, metres.
 

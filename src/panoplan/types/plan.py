@@ -13,6 +13,7 @@ from panoplan.types.arrays import FloatArray
 
 Unit = Literal["m", "ch"]
 ApertureKind = Literal["door", "opening", "window"]
+MetricSource = Literal["camera height", "trajectory", "length", "door height"]
 ApertureSource = Literal["assumed width", "border", "leak", "seen", "walked"]
 """What speaks for a door, opening or window: layouts show it; their boundary goes through it; the
 camera walked through it; two rooms end without a wall between. Or its width is a guess."""
@@ -41,6 +42,19 @@ class ScaleEstimate:
     at_edge: bool = False
     converged: bool = True
     keyframes_used: int = 0
+
+
+@dataclass(frozen=True)
+class MetricScale:
+    """Where the metres of a plan come from.
+
+    Attributes:
+        source: what was known in metres.
+        sigma: relative standard deviation of all lengths together.
+    """
+
+    source: MetricSource
+    sigma: float
 
 
 @dataclass(frozen=True, eq=False)
@@ -185,6 +199,7 @@ class FloorPlan:
         doors: with or without a leaf.
         openings: where a room goes on into the next without a door.
         windows: in outer walls.
+        metric: where its metres come from, None for a plan in camera heights.
         settings: the resolved settings as nested plain values.
         version: of panoplan.
     """
@@ -200,5 +215,6 @@ class FloorPlan:
     doors: tuple[Aperture, ...] = ()
     openings: tuple[Aperture, ...] = ()
     windows: tuple[Aperture, ...] = ()
+    metric: MetricScale | None = None
     settings: dict[str, Any] = field(default_factory=dict)
     version: str = ""

@@ -22,7 +22,7 @@ from panoplan.exporters.storeys import (
     through,
 )
 from panoplan.types.arrays import FloatArray
-from panoplan.types.plan import Aperture, FloorPlan
+from panoplan.types.plan import Aperture, FloorPlan, MetricScale
 
 INK = "#1D2127"
 SOLID = "#4A515B"
@@ -65,7 +65,8 @@ def _sheet(
 ) -> Sheet:
     labels, numbered = _labels(floor, placement)
     lengths, left_out = dimensions(floor, placement, labels)
-    notes = [*numbered]
+    notes = [] if plan.metric is None else [_metres(plan.metric)]
+    notes += numbered
     if left_out:
         notes.append(f"{left_out} lengths have no space here; plan.dxf has them all.")
     missing = [r for r in plan.rooms if r.polygon is None and r.level == floor.level]
@@ -93,6 +94,11 @@ def _sheet(
         "title": title_block(placement, told),
     }
     return Sheet(placement.paper, placement.denominator, told.title, layers)
+
+
+def _metres(metric: MetricScale) -> str:
+    share = f"± {100 * metric.sigma:.1f} % of every length together"
+    return f"Metres by {metric.source}: {share}; a wall's own ± is in plan.geojson."
 
 
 def _rings(area: object, placement: Placement) -> tuple[FloatArray, ...]:

@@ -1,0 +1,1 @@
+"""Edits of a plan: found again by where they lie, then applied."""
