@@ -23,6 +23,7 @@ from panoplan.types.plan import Aperture, FloorPlan, PlanPose
 
 SOURCES = ("camera height", "trajectory", "length", "door height")
 
+_HEIGHT_SIGMA_M = 0.01
 _IMAGE_ROWS = 1024
 _ROW_SIGMA = 1.5
 _DOOR_M = 2.0
@@ -40,8 +41,9 @@ def measure(
 ) -> dict[str, Any]:
     """Runs the method on flats of both grades and makes each plan metric in four ways.
 
-    The length is that of the longest wall that the plan has, as taped; the height that of a door
-    that a camera sees from 1.2 m to 4 m, its upper edge marked within 1.5 rows of 1,024.
+    The camera's height is told with an error of 1 cm. The length is that of the longest wall that
+    the plan has, as taped; the height that of a door that a camera sees from 1.2 m to 4 m, its
+    upper edge marked within 1.5 rows of 1,024.
 
     Args:
         seeds: one flat each.
@@ -66,7 +68,9 @@ def measure(
 def _scene(work: tuple[Grade, int], config: Config, rooms: int | None) -> dict[str, Any]:
     grade, seed = work
     scene = simulate_flat(seed, grade, rooms=rooms)
-    plan = _plan(scene, config, "unknown", scene.camera_height_m)
+    rng = np.random.default_rng(seed)
+    told = scene.camera_height_m + rng.normal(0.0, _HEIGHT_SIGMA_M)
+    plan = _plan(scene, config, "unknown", told)
     found: dict[str, Any] = {"seed": seed, "camera height": _row(plan, scene, ())}
     # The same walk with its unit known: metres are in both, the drift is the same.
     metric = simulate_flat(seed, grade, rooms=rooms, metres_per_su=1.0)
@@ -76,7 +80,7 @@ def _scene(work: tuple[Grade, int], config: Config, rooms: int | None) -> dict[s
         wall, metres = taped
         edits = changed(Edits(), plan, lengths=[f"{wall}={metres:.4f}"])
         found["length"] = _row(apply(plan, edits).plan, scene, (wall,))
-    seen = _seen_door(plan, scene, np.random.default_rng(seed))
+    seen = _seen_door(plan, scene, rng)
     if seen is not None:
         edits = changed(Edits(), plan, door_heights=[seen])
         found["door height"] = _row(apply(plan, edits).plan, scene, ())

@@ -161,7 +161,7 @@ def _metric(state: State, scale_sigma: float | None) -> MetricScale | None:
 _HEIGHT_SIGMA_M = 0.01
 """How well people know the height of their camera."""
 
-_COMMON_SIGMA = 0.01
+_COMMON_SIGMA = 0.006
 """Relative error of size that the layouts of a whole walk have in common: on simulated flats."""
 
 
