@@ -1,6 +1,7 @@
 import json
 
 import pytest
+from tests.exporters.model.painted import painted_plan, write_panoramas
 from tests.metrics.plans import plan
 
 from panoplan.cli.main import main
@@ -26,6 +27,27 @@ def test_export_writes_what_it_is_asked_for(folder, capsys):
     assert 'width="594mm"' in text
     assert "north" in text
     assert json.loads((out / "plan.geojson").read_bytes())["panoplan"]["coordinates"] == "WGS 84"
+
+
+def test_images_texture_the_model(tmp_path, capsys):
+    pytest.importorskip("trimesh", reason="the extra 'export' is not installed")
+    made = painted_plan()
+    write_plan(tmp_path / "plan.json", made)
+    files = write_panoramas(tmp_path, made, width=128)
+    words = ["export", str(tmp_path / "plan.json"), "--to", "glb", "--quiet"]
+    for name, more in (("plain", []), ("photos", ["--images", str(tmp_path)])):
+        assert main([*words, "-o", str(tmp_path / name), *more]) == 0
+    sizes = [(tmp_path / name / "plan.glb").stat().st_size for name in ("plain", "photos")]
+    assert sizes[1] > sizes[0] + 10_000
+    files["kf1"].unlink()
+    assert main([*words, "-o", str(tmp_path / "one"), "--images", str(tmp_path)]) == 0
+    assert "no image of 1 of 2 keyframes" in capsys.readouterr().err
+    files["kf0"].write_bytes(b"broken")
+    assert main([*words, "-o", str(tmp_path / "two"), "--images", str(tmp_path)]) == 2
+    files["kf0"].unlink()
+    assert main([*words, "-o", str(tmp_path / "two"), "--images", str(tmp_path)]) == 2
+    assert "no image of any keyframe" in capsys.readouterr().err
+    assert not (tmp_path / "two").exists()
 
 
 def newer(data):

@@ -37,7 +37,7 @@ def measure(
     progress: Callable[[int, int], None],
     *,
     jobs: int = 1,
-    rooms: int | None = None,
+    grades: Sequence[Grade] = GRADES,
 ) -> dict[str, Any]:
     """Runs the method on flats of both grades and makes each plan metric in four ways.
 
@@ -50,30 +50,30 @@ def measure(
         config: settings.
         progress: called with (flats done, flats in all).
         jobs: processes; the figures do not depend on it.
-        rooms: of each flat; None as the flats are drawn.
+        grades: of noise.
 
     Returns:
         For each grade and source the summary over the flats, and the flats.
     """
-    work = [(grade, seed) for grade in GRADES for seed in seeds]
-    rows = mapped(partial(_scene, config=config, rooms=rooms), work, processes(jobs), progress)
+    work = [(grade, seed) for grade in grades for seed in seeds]
+    rows = mapped(partial(_scene, config=config), work, processes(jobs), progress)
     result: dict[str, Any] = {}
-    for grade in GRADES:
+    for grade in grades:
         scenes = [row for (of, _), row in zip(work, rows, strict=True) if of == grade]
         summary = {name: _summary([s[name] for s in scenes if name in s]) for name in SOURCES}
         result[grade] = {"summary": summary, "scenes": scenes}
     return result
 
 
-def _scene(work: tuple[Grade, int], config: Config, rooms: int | None) -> dict[str, Any]:
+def _scene(work: tuple[Grade, int], config: Config) -> dict[str, Any]:
     grade, seed = work
-    scene = simulate_flat(seed, grade, rooms=rooms)
+    scene = simulate_flat(seed, grade)
     rng = np.random.default_rng(seed)
     told = scene.camera_height_m + rng.normal(0.0, _HEIGHT_SIGMA_M)
     plan = _plan(scene, config, "unknown", told)
     found: dict[str, Any] = {"seed": seed, "camera height": _row(plan, scene, ())}
     # The same walk with its unit known: metres are in both, the drift is the same.
-    metric = simulate_flat(seed, grade, rooms=rooms, metres_per_su=1.0)
+    metric = simulate_flat(seed, grade, metres_per_su=1.0)
     found["trajectory"] = _row(_plan(metric, config, "m", None), metric, ())
     taped = _longest(plan, scene)
     if taped is not None:

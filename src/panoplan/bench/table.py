@@ -198,9 +198,9 @@ def _metric(files: list[dict[str, Any]]) -> str:
              "lengths of walls, median error", "of walls from 1 m"]  # fmt: skip
     title = (
         "Where the metres come from, on simulated flats: the size of the plan as a whole against "
-        "the ± that it states, and the lengths of its walls. The camera's height is told with an error "
-        "of 1 cm; the length is that of the longest wall; the door is 2 m high and its edge marked "
-        "within 1.5 of 1,024 rows."
+        "the ± that it states, and the lengths of its walls. The camera's height is told with an "
+        "error of 1 cm; the length is that of the longest wall; the door is 2 m high and its edge "
+        "marked within 1.5 of 1,024 rows."
     )
     return f"{title}\n\n{table(heads, rows)}"
 

@@ -5,10 +5,15 @@ from __future__ import annotations
 import argparse
 import math
 import sys
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+from panoplan.cli.progress import progress
 from panoplan.errors import InputError
+
+if TYPE_CHECKING:
+    from panoplan.types.plan import FloorPlan
 
 
 def add_parser(commands: Any) -> None:
@@ -44,6 +49,14 @@ def add_parser(commands: Any) -> None:
         metavar="LAT,LON",
         help="degrees (WGS 84) of the plan's origin: GeoJSON on the globe; wants --north",
     )
+    parser.add_argument(
+        "--images",
+        type=Path,
+        metavar="FOLDER",
+        help="upright panoramas named after their keyframes, or a scene with images: texture of "
+        "the GLB",
+    )
+    parser.add_argument("--quiet", action="store_true", help="no progress")
     parser.set_defaults(act=act)
 
 
@@ -54,18 +67,37 @@ def act(options: argparse.Namespace) -> int:
 
     kinds = [kind for kind in options.to.lower().split(",") if kind]
     north = None if options.north is None else math.radians(_finite("--north", options.north))
-    told = ExportOptions(
-        title=options.title or options.plan.resolve().parent.name,
-        north=north,
-        paper=options.paper,
-        anchor=_anchor(options.anchor, north),
-    )
     edited = read_edited(options.plan)
     for lost in edited.lost:
         print(f"panoplan: edit not applied: {lost}", file=sys.stderr)
-    for path in export(edited.plan, kinds, options.output, told):
+    with progress("surfaces", quiet=options.quiet or options.images is None) as report:
+        told = ExportOptions(
+            title=options.title or options.plan.resolve().parent.name,
+            north=north,
+            paper=options.paper,
+            anchor=_anchor(options.anchor, north),
+            images=_images(options.images, edited.plan),
+            progress=report,
+        )
+        made = export(edited.plan, kinds, options.output, told)
+    for path in made:
         print(path)
     return 0
+
+
+def _images(folder: Path | None, plan: FloorPlan) -> Mapping[str, Path]:
+    from panoplan.formats.panoramas import find_panoramas
+
+    if folder is None:
+        return {}
+    ids = [pose.id for pose in plan.trajectory]
+    found = find_panoramas(folder, ids)
+    if not found:
+        raise InputError(folder, "no image of any keyframe", f"images named as {ids[:1]}")
+    if len(found) < len(ids):
+        missing = f"{len(ids) - len(found)} of {len(ids)} keyframes"
+        print(f"panoplan: {folder}: no image of {missing}", file=sys.stderr)
+    return found
 
 
 def _anchor(text: str | None, north: float | None) -> Any:

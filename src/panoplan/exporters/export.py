@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from panoplan.errors import InputError
@@ -24,12 +24,16 @@ class ExportOptions:
             where not known.
         paper: "A4" to "A0" for sheets, None for what suits.
         anchor: where the plan's origin lies on the globe, for GeoJSON; None for plan metres.
+        images: panorama of each keyframe, for the GLB's texture; empty for plain colours.
+        progress: called with (surfaces textured, surfaces in all).
     """
 
     title: str
     north: float | None = None
     paper: str | None = None
     anchor: Anchor | None = None
+    images: Mapping[str, Path] = field(default_factory=dict)
+    progress: Callable[[int, int], None] = lambda done, total: None
 
 
 def _svg(plan: FloorPlan, options: ExportOptions) -> Files:
@@ -70,8 +74,13 @@ def _ifc(plan: FloorPlan, options: ExportOptions) -> Files:
 
 def _glb(plan: FloorPlan, options: ExportOptions) -> Files:
     from panoplan.exporters.model.glb import plan_glb
+    from panoplan.exporters.model.surfaces import plan_surfaces
+    from panoplan.exporters.model.texture import pictures, read_photos
 
-    return {"plan.glb": plan_glb(plan)}
+    surfaces = plan_surfaces(plan)
+    photos = read_photos(plan, options.images)
+    made = pictures(surfaces, photos, progress=options.progress) if photos else {}
+    return {"plan.glb": plan_glb(plan, surfaces, made)}
 
 
 def _csv(plan: FloorPlan, options: ExportOptions) -> Files:
