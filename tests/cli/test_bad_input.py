@@ -330,7 +330,7 @@ def write_blocked(out):
 @pytest.mark.parametrize(
     ("block", "told"),
     [
-        (write_file, "out: found File exists"),
+        (write_file, "out: found Not a directory"),
         (write_parent, "out: found Not a directory"),
         (write_other, "out: found a folder with other files"),
         (write_blocked, "settings.toml: found Is a directory"),

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from panoplan.cli import settings
+from panoplan.cli.layout import add_network_arguments
 from panoplan.cli.progress import progress
 
 EXIT_NO_ROOM = 3
@@ -36,26 +37,31 @@ def add_parser(commands: Any) -> None:
     )
     parser.add_argument("--force", action="store_true", help="write into a folder of other files")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
+    add_network_arguments(parser)
     settings.add_arguments(parser)
     parser.set_defaults(act=act)
 
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
-    from panoplan.datasets.detect import open_scene
+    from panoplan.cache import Cache, cache_folder
     from panoplan.formats.run_folder import RunFolder
+    from panoplan.intake import Given, open_input
     from panoplan.pipeline import RunOptions, run, summary
 
     config = settings.resolve(options)
-    scene = open_scene(
+    given = Given(
         options.input,
-        trajectory=options.trajectory,
-        layouts=options.layouts,
-        version=options.version,
+        options.trajectory,
+        options.layouts,
+        options.version,
+        options.model,
+        options.average,
     )
     folder = RunFolder(options.output, force=options.force)
     told = RunOptions(options.trajectory_unit, options.camera_height, options.explain)
     with progress("keyframes", quiet=options.quiet) as report:
+        scene = open_input(given, folder.scene, Cache(cache_folder()), report)
         plan = run(scene, config, told, folder, report)
     if not options.quiet:
         print(f"{scene.kind}: {scene.association}\n{summary(plan)}\n{folder.path / 'plan.json'}")

@@ -8,6 +8,7 @@ from panoplan.datasets import folder as sequence_folder
 from panoplan.datasets import mp3d_fpe
 from panoplan.datasets.scene import Scene
 from panoplan.errors import InputError
+from panoplan.formats.image import list_images
 from panoplan.formats.sequence import DESCRIPTION, LAYOUTS, TRAJECTORY, TRUE_PLAN
 from panoplan.layouts.files import list_layouts
 from panoplan.types.truth import GroundTruth
@@ -56,6 +57,24 @@ def open_scene(
     if not own and (trajectory is None or layouts is None):
         raise InputError(path, "none of the files of a scene", _EXPECTED)
     return sequence_folder.open_folder(path, trajectory=trajectory, layouts=layouts)
+
+
+def image_files(path: Path) -> list[Path]:
+    """The images of a folder: those in its images/ or rgb/, else its own; natural order."""
+    for place in (path / "images", path / "rgb", path):
+        images = list_images(place) if place.is_dir() else []
+        if images:
+            return images
+    return []
+
+
+def has_layouts(path: Path, version: str | None = None) -> bool:
+    """Whether a folder brings layouts: those of a scene, or files that are layouts themselves."""
+    if (path / LAYOUTS).exists() or _holds_layouts(path):
+        return True
+    if (path / DESCRIPTION).exists():
+        return False
+    return mp3d_fpe.version_folder(path, version) is not None
 
 
 def read_truth(path: Path, *, version: str | None = None) -> GroundTruth:

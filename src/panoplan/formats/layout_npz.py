@@ -71,6 +71,11 @@ def write_layout_npz(path: Path, layout: Layout) -> None:
     Raises:
         InputError: the place cannot be written.
     """
+    write_bytes(path, layout_npz(layout))
+
+
+def layout_npz(layout: Layout) -> bytes:
+    """The bytes of a layout file; the same layout gives the same bytes."""
     buffer = io.BytesIO()
     with zipfile.ZipFile(buffer, "w", zipfile.ZIP_DEFLATED) as archive:
         values = {name: getattr(layout, name) for name in _FIELDS}
@@ -78,12 +83,12 @@ def write_layout_npz(path: Path, layout: Layout) -> None:
         for name, value in values.items():
             if value is None:
                 continue
-            # A fixed date, so that the same layout gives the same bytes.
+            # Without a date of its own.
             member = zipfile.ZipInfo(f"{name}.npy", date_time=(1980, 1, 1, 0, 0, 0))
             member.compress_type = zipfile.ZIP_DEFLATED
             with archive.open(member, "w") as stream:
                 np.save(stream, np.asarray(value, dtype=np.float32), allow_pickle=False)
-    write_bytes(path, buffer.getvalue())
+    return buffer.getvalue()
 
 
 def _members(path: Path) -> dict[str, NDArray[np.float64]]:

@@ -1,4 +1,7 @@
-"""The folder of a run: settings.toml, log.jsonl, plan.json, and the state of an unfinished one."""
+"""The folder of a run: settings.toml, log.jsonl, plan.json, and the state of an unfinished one.
+
+`scene/` in it holds what was made from images: a sequence folder like any other.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +20,7 @@ from panoplan import __version__
 from panoplan.config import Config, as_dict
 from panoplan.errors import InputError
 from panoplan.estimator.state import State, Walk
-from panoplan.formats.atomic import append_text, write_text
+from panoplan.formats.atomic import append_text, make_folder, write_text
 from panoplan.formats.plan_json import write_plan
 from panoplan.formats.state import read_state, write_state
 from panoplan.types.events import Event
@@ -25,6 +28,7 @@ from panoplan.types.keyframe import Keyframe
 from panoplan.types.plan import FloorPlan
 
 SETTINGS = "settings.toml"
+SCENE = "scene"
 _STATE = ".unfinished.npz"
 _LOG = "log.jsonl"
 _SAVE_EVERY_S = 5.0
@@ -47,27 +51,31 @@ class RunFolder:
     """Writes what a run makes, and remembers how far it came.
 
     Args:
-        path: made where it does not exist.
+        path: made by `begin` where it does not exist.
         force: whether a folder that holds other things may be used.
 
     Raises:
-        InputError: the path is a file, cannot be made, or holds other things.
+        InputError: the path is a file, cannot be read, or holds other things.
     """
 
     def __init__(self, path: Path, *, force: bool = False) -> None:
         self.path = path
         try:
-            path.mkdir(parents=True, exist_ok=True)
-            names = {item.name for item in path.iterdir()}
+            names = {item.name for item in path.iterdir()} if path.exists() else set()
         except OSError as error:
             raise InputError(path, f"{error.strerror or error}", "a folder to write to") from None
-        if names and not force and not names & {SETTINGS, _STATE}:
+        if names - {SCENE} and not force and not names & {SETTINGS, _STATE}:
             raise InputError(path, "a folder with other files", "an empty folder, or --force")
         self._fingerprint = ""
         self._saved_at = time.monotonic()
 
+    @property
+    def scene(self) -> Path:
+        """Where a sequence folder made from images belongs."""
+        return self.path / SCENE
+
     def begin(self, keyframes: Sequence[Keyframe], config: Config, walk: Walk) -> State | None:
-        """Writes the settings; gives the state of an unfinished run of the same input.
+        """Makes the folder, writes the settings; gives the state of an unfinished equal run.
 
         Args:
             keyframes: of the whole walk.
@@ -77,6 +85,7 @@ class RunFolder:
         Returns:
             The state to go on from, or None.
         """
+        make_folder(self.path)
         self._fingerprint = fingerprint(keyframes, config, walk)
         write_text(self.path / SETTINGS, tomli_w.dumps(as_dict(config)))
         state = self._unfinished()

@@ -11,6 +11,7 @@ from pathlib import PurePosixPath
 import numpy as np
 
 from panoplan.errors import InputError
+from panoplan.formats.names import natural_order
 
 _ENDINGS = {".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff", ".npz", ".npy", ".json"}
 
@@ -144,7 +145,7 @@ def _by_order(labels: Sequence[str], panoramas: Sequence[Panorama]) -> Matches:
     values = [_number(label) for label in labels]
     rising = None not in values and np.all(np.diff(np.array(values, dtype=float)) > 0)
     if rising and len(labels) == len(panoramas):
-        return tuple(sorted(panoramas, key=lambda p: _natural(p.id)))
+        return tuple(sorted(panoramas, key=lambda p: natural_order(p.id)))
     return ()
 
 
@@ -185,8 +186,3 @@ def _number(label: str) -> float | None:
 def _time(label: str) -> float | None:
     """A number that can be a time: with decimals, or nine digits and more."""
     return _number(label) if re.fullmatch(r"\d{9,20}|\d{1,20}\.\d.*", label) else None
-
-
-def _natural(name: str) -> list[tuple[int, int, str]]:
-    parts = re.split(r"(\d+)", name)
-    return [(0, int(s[:1000]), "") if s.isdecimal() else (1, 0, s) for s in parts]
