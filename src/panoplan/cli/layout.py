@@ -45,7 +45,7 @@ def act(options: argparse.Namespace) -> int:
     from panoplan.datasets.detect import image_files
     from panoplan.errors import InputError
     from panoplan.formats.sequence import LAYOUTS
-    from panoplan.intake import open_network
+    from panoplan.intake.layouts import open_network
     from panoplan.layouts.images import image_ids, predict_layouts
 
     images: list[Path] = []

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +18,13 @@ def add_parser(commands: Any) -> None:
     """Adds the command."""
     parser = commands.add_parser(
         "run",
-        help="poses and layouts become a floor plan",
-        description="Turns a folder of camera poses and room layouts into a floor plan.",
-        epilog="example: panoplan run walk/ -o plan/ --camera-height 1.5; with --explain it also "
-        "writes plan/explain/1_scale.png, 2_rooms.png, ...",
+        help="images, or poses and layouts, become a floor plan",
+        description="Turns a 360° video, a folder of panoramas, or a folder of camera poses and "
+        "room layouts into a floor plan. What is missing is found; what was found is kept.",
+        epilog="example: panoplan run walk.mp4 -o plan/ --camera-height 1.5; with --explain it "
+        "also writes plan/explain/1_scale.png, 2_rooms.png, ...",
     )
-    parser.add_argument("input", type=Path, help="sequence folder or MP3D-FPE folder")
+    parser.add_argument("input", type=Path, help="video, folder of images or scene")
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
     parser.add_argument("--trajectory", type=Path, help="TUM file instead of the folder's")
     parser.add_argument("--layouts", type=Path, help="folder instead of the folder's")
@@ -45,8 +47,11 @@ def add_parser(commands: Any) -> None:
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     from panoplan.cache import Cache, cache_folder
+    from panoplan.estimator.state import Walk
     from panoplan.formats.run_folder import RunFolder
-    from panoplan.intake import Given, open_input
+    from panoplan.intake.given import Given
+    from panoplan.intake.live import LivePlan
+    from panoplan.intake.open import open_input
     from panoplan.pipeline import RunOptions, run, summary
 
     config = settings.resolve(options)
@@ -59,12 +64,15 @@ def act(options: argparse.Namespace) -> int:
         options.average,
     )
     folder = RunFolder(options.output, force=options.force)
-    told = RunOptions(options.trajectory_unit, options.camera_height, options.explain)
+    known = RunOptions(options.trajectory_unit, options.camera_height, options.explain)
     with progress("keyframes", quiet=options.quiet) as report:
-        scene = open_input(given, folder.scene, Cache(cache_folder()), report)
-        plan = run(scene, config, told, folder, report)
+        walk = Walk(camera_height_m=options.camera_height)
+        live = partial(LivePlan, config, walk, partial(folder.show, config))
+        scene, told = open_input(given, folder.scene, Cache(cache_folder()), report, live)
+        plan = run(scene, config, known, folder, report)
     if not options.quiet:
-        print(f"{scene.kind}: {scene.association}\n{summary(plan)}\n{folder.path / 'plan.json'}")
+        lines = [f"{scene.kind}: {scene.association}", *told.lines, summary(plan)]
+        print("\n".join([*lines, str(folder.path / "plan.json")]))
     return 0 if any(room.polygon is not None for room in plan.rooms) else EXIT_NO_ROOM
 
 

@@ -77,6 +77,20 @@ def has_layouts(path: Path, version: str | None = None) -> bool:
     return mp3d_fpe.version_folder(path, version) is not None
 
 
+def own_layouts(path: Path) -> Path | None:
+    """The folder of layouts that a folder of images brings, or None."""
+    return path / LAYOUTS if (path / LAYOUTS).is_dir() else None
+
+
+def has_trajectory(path: Path, version: str | None = None) -> bool:
+    """Whether a folder brings camera poses."""
+    if (path / TRAJECTORY).exists():
+        return True
+    if (path / DESCRIPTION).exists():
+        return False
+    return mp3d_fpe.version_folder(path, version) is not None
+
+
 def read_truth(path: Path, *, version: str | None = None) -> GroundTruth:
     """Reads the truth beside a scene, for metrics only.
 

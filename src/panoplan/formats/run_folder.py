@@ -110,6 +110,12 @@ class RunFolder:
             write_state(self.path / _STATE, state, self._fingerprint)
             self._saved_at = time.monotonic()
 
+    def show(self, config: Config, plan: FloorPlan) -> None:
+        """Writes settings.toml and plan.json of a walk that is not over."""
+        make_folder(self.path)
+        write_text(self.path / SETTINGS, tomli_w.dumps(as_dict(config)))
+        write_plan(self.path / "plan.json", plan)
+
     def complete(self, plan: FloorPlan) -> None:
         """Writes plan.json and drops the state of the unfinished run."""
         write_plan(self.path / "plan.json", plan)

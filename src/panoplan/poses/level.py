@@ -63,3 +63,25 @@ def _smallest_turn(down: FloatArray) -> FloatArray:
     ax, az = -z / sin, x / sin
     skew = np.array([[0, -az, 0], [az, 0, -ax], [0, ax, 0]])
     return np.asarray(np.eye(3) + sin * skew + (1 - y) * (skew @ skew))
+
+
+def upright(rotations: FloatArray) -> FloatArray:
+    """The rotations of cameras that look the same way and stand upright.
+
+    Args:
+        rotations: (N, 3, 3) of cameras in a level world.
+
+    Returns:
+        (N, 3, 3) turns about the vertical with the same heading of the cameras' z axes.
+    """
+    heading = np.arctan2(rotations[:, 0, 2], rotations[:, 2, 2])
+    turns = np.zeros_like(rotations)
+    turns[:, 0, 0] = turns[:, 2, 2] = np.cos(heading)
+    turns[:, 0, 2], turns[:, 2, 0] = np.sin(heading), -np.sin(heading)
+    turns[:, 1, 1] = 1
+    return turns
+
+
+def tilts_deg(rotations: FloatArray) -> FloatArray:
+    """(N,) angles in degrees between cameras' down axes and gravity of a level world."""
+    return np.degrees(np.arccos(np.clip(rotations[:, 1, 1], -1, 1)))

@@ -69,7 +69,7 @@ def test_images_none_of_which_is_usable_end_in_one_line(photos, network, tmp_pat
 
 
 def test_images_without_a_network_name_both_ways_out(photos, tmp_path, capsys, monkeypatch):
-    monkeypatch.setattr("panoplan.intake.SHIPPED", tmp_path / "none.onnx")
+    monkeypatch.setattr("panoplan.intake.layouts.SHIPPED", tmp_path / "none.onnx")
     assert main(["run", str(photos), "-o", str(tmp_path / "x")]) == 2
     error = capsys.readouterr().err
     assert "--layouts" in error

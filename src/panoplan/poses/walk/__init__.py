@@ -1,0 +1,1 @@
+"""Odometry of a walk: keyframe in, pose out."""

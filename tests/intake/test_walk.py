@@ -1,0 +1,137 @@
+import json
+import shutil
+import wave
+
+import numpy as np
+import pytest
+from PIL import Image
+from tests.scenes import exact_layout
+from tests.walks import box_room, path_poses, picture
+
+from panoplan.cli.main import main
+from panoplan.formats.image import write_jpeg
+from panoplan.formats.layout_npz import write_layout_npz
+from panoplan.formats.plan_json import read_plan
+
+pytest.importorskip("pycolmap", reason="needs the extra images")
+
+ROOM = np.array([[-2.0, -1.5], [2.0, -1.5], [2.0, 1.5], [-2.0, 1.5]])
+
+
+@pytest.fixture(autouse=True)
+def cache(monkeypatch, tmp_path_factory):
+    folder = tmp_path_factory.getbasetemp() / "walk_cache"
+    monkeypatch.setenv("PANOPLAN_CACHE", str(folder))
+
+
+@pytest.fixture(scope="module")
+def photos(tmp_path_factory):
+    """Twelve panoramas of a room of 4 m × 3 m with their layouts and no poses."""
+    folder = tmp_path_factory.mktemp("photos") / "room"
+    (folder / "images").mkdir(parents=True)
+    (folder / "layouts_pred").mkdir()
+    walls = box_room(-2, 2, -1.5, 1.5, np.random.default_rng(3))
+    walk = path_poses([(-1.2, -0.6), (-0.9, 0.6), (0.6, 0.5), (1.0, -0.2)], 0.3)
+    for name, rotation, position in zip(
+        walk.labels, walk.rotations, walk.translations, strict=True
+    ):
+        write_jpeg(folder / "images" / f"p{name}.jpg", picture(walls, rotation, position, 512))
+        layout = exact_layout(ROOM, position[[0, 2]], rotation, height=1.5)
+        write_layout_npz(folder / "layouts_pred" / f"p{name}.npz", layout)
+    return folder
+
+
+def room_size(plan):
+    """Sides of the only room, shorter first, from its area and perimeter."""
+    (room,) = plan.rooms
+    edges = np.linalg.norm(np.roll(room.polygon, -1, axis=0) - room.polygon, axis=1)
+    return np.sort(edges)[[0, -1]]
+
+
+def test_photos_alone_become_the_room_in_metres(photos, tmp_path, capsys):
+    out = tmp_path / "plan"
+    words = ["run", str(photos), "-o", str(out), "--camera-height", "1.5"]
+    assert main(words) == 0
+    told = capsys.readouterr().out
+    count = len(list((photos / "images").iterdir()))
+    assert f"{count} of {count} keyframes have poses" in told
+    assert "horizon levelled" in told
+    plan = read_plan(out / "plan.json")
+    assert plan.unit == "m"
+    np.testing.assert_allclose(room_size(plan), [3, 4], rtol=0.05)
+    # The folder that was made is a scene of its own, and gives the same plan.
+    again = tmp_path / "again"
+    layouts = ["--layouts", str(photos / "layouts_pred")]
+    scene = ["run", str(out / "scene"), "-o", str(again), "--camera-height", "1.5", "--quiet"]
+    assert main([*scene, *layouts]) == 0
+    np.testing.assert_array_equal(
+        read_plan(again / "plan.json").rooms[0].polygon, plan.rooms[0].polygon
+    )
+
+
+def test_what_is_no_panorama_is_left_out_and_counted(photos, tmp_path, capsys):
+    folder = tmp_path / "mixed"
+    shutil.copytree(photos, folder)
+    images = folder / "images"
+    for path in sorted(images.iterdir())[6:]:
+        path.unlink()
+    shutil.copy(images / "p1.jpg", images / "p1b.jpg")
+    Image.new("RGB", (1024, 512)).save(images / "q_black.png")
+    Image.new("RGB", (800, 600)).save(images / "q_small.png")
+    (images / "q_broken.jpg").write_bytes(b"\xff\xd8")
+    out = tmp_path / "plan"
+    assert main(["run", str(folder), "-o", str(out), "--camera-height", "1.5"]) in (0, 3)
+    told = capsys.readouterr().out
+    assert "1 panoramas passed over" in told
+    assert "3 images left out" in told
+    reasons = {
+        s["keyframe"]: s["reason"] for s in json.loads((out / "plan.json").read_text())["skipped"]
+    }
+    assert "800×600" in reasons["q_small"]
+    assert "one colour" in reasons["q_black"]
+    assert "no readable image" in reasons["q_broken"]
+
+
+def test_one_photo_is_one_room(photos, tmp_path):
+    folder = tmp_path / "one"
+    (folder / "images").mkdir(parents=True)
+    shutil.copy(photos / "images" / "p3.jpg", folder / "images")
+    words = ["run", str(folder), "--layouts", str(photos / "layouts_pred"), "--quiet"]
+    assert main([*words, "-o", str(tmp_path / "a"), "--camera-height", "1.5"]) == 0
+    np.testing.assert_allclose(
+        room_size(read_plan(tmp_path / "a" / "plan.json")), [3, 4], rtol=0.05
+    )
+    assert main([*words, "-o", str(tmp_path / "b")]) == 0
+    plan = read_plan(tmp_path / "b" / "plan.json")
+    assert plan.unit == "ch"
+    np.testing.assert_allclose(room_size(plan), [2, 8 / 3], rtol=0.05)
+
+
+def sound(path):
+    with wave.open(str(path), "wb") as stream:
+        stream.setparams((1, 2, 8000, 0, "NONE", ""))
+        stream.writeframes(bytes(16000))
+
+
+def wrong_aspect(path):
+    path.mkdir()
+    for k in range(3):
+        Image.new("RGB", (800, 600)).save(path / f"{k}.png")
+
+
+@pytest.mark.parametrize(
+    ("name", "make", "told"),
+    [
+        ("a.mp4", sound, "sound without pictures"),
+        ("a.mp4", lambda p: p.write_bytes(b"\0" * 4096), "no readable video"),
+        ("photos", wrong_aspect, "800×600"),
+    ],
+)
+def test_what_holds_no_panorama_is_one_line_and_exit_2(name, make, told, photos, tmp_path, capsys):
+    make(tmp_path / name)
+    layouts = ["--layouts", str(photos / "layouts_pred")]
+    assert main(["run", str(tmp_path / name), "-o", str(tmp_path / "out"), *layouts]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
