@@ -26,7 +26,9 @@ def add_parser(commands: Any) -> None:
     )
     parser.add_argument("input", type=Path, help="video, folder of images or scene")
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
-    parser.add_argument("--trajectory", type=Path, help="TUM file instead of the folder's")
+    parser.add_argument(
+        "--trajectory", type=Path, help="TUM, KITTI, COLMAP, ... instead of the folder's"
+    )
     parser.add_argument("--layouts", type=Path, help="folder instead of the folder's")
     parser.add_argument("--version", help="of an MP3D-FPE scene that has several")
     parser.add_argument("--trajectory-unit", choices=["m", "unknown"], default="unknown")

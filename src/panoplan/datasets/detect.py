@@ -11,6 +11,7 @@ from panoplan.errors import InputError
 from panoplan.formats.image import list_images
 from panoplan.formats.sequence import DESCRIPTION, LAYOUTS, TRAJECTORY, TRUE_PLAN
 from panoplan.layouts.files import list_layouts
+from panoplan.poses.files import PLACES, find_trajectory
 from panoplan.types.truth import GroundTruth
 
 _EXPECTED = (
@@ -31,7 +32,7 @@ def open_scene(
     Args:
         path: a sequence folder; an MP3D-FPE scene or one version of it; a folder of layouts, when
             a trajectory is given; or any folder, when both are.
-        trajectory: TUM file used instead of the folder's own.
+        trajectory: file of any program used instead of the folder's own.
         layouts: folder used instead of the folder's own.
         version: of an MP3D-FPE scene that has several.
 
@@ -53,7 +54,7 @@ def open_scene(
         raise InputError(path, "no MP3D-FPE scene", "one, as a version is asked for")
     if trajectory is not None and layouts is None and _holds_layouts(path):
         layouts = path
-    own = [name for name in (DESCRIPTION, TRAJECTORY, LAYOUTS) if (path / name).exists()]
+    own = [name for name in (DESCRIPTION, *PLACES, LAYOUTS) if (path / name).exists()]
     if not own and (trajectory is None or layouts is None):
         raise InputError(path, "none of the files of a scene", _EXPECTED)
     return sequence_folder.open_folder(path, trajectory=trajectory, layouts=layouts)
@@ -84,7 +85,7 @@ def own_layouts(path: Path) -> Path | None:
 
 def has_trajectory(path: Path, version: str | None = None) -> bool:
     """Whether a folder brings camera poses."""
-    if (path / TRAJECTORY).exists():
+    if find_trajectory(path) is not None:
         return True
     if (path / DESCRIPTION).exists():
         return False

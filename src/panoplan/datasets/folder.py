@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from pathlib import Path
 
 from panoplan.datasets.scene import Scene, build_scene
@@ -20,6 +21,7 @@ from panoplan.formats.sequence import (
 from panoplan.formats.tum import read_tum
 from panoplan.layouts.files import list_layouts, read_layout
 from panoplan.poses.associate import Panorama, associate
+from panoplan.poses.files import find_trajectory, read_trajectory
 from panoplan.types.pose import Trajectory
 from panoplan.types.truth import GroundTruth
 
@@ -30,8 +32,9 @@ def open_folder(
     """Reads a sequence folder. Truth and images are never read.
 
     Args:
-        folder: holds trajectory.tum and layouts_pred/, and may hold sequence.json.
-        trajectory: TUM file used instead of the folder's.
+        folder: holds a trajectory by one of its usual names (trajectory.tum, COLMAP's images.txt
+            or images.bin, ...) and layouts_pred/, and may hold sequence.json.
+        trajectory: file of any program used instead of the folder's.
         layouts: folder used instead of layouts_pred/; .npz, .npy or .json.
 
     Returns:
@@ -42,26 +45,29 @@ def open_folder(
             none of those readable; several cameras all at one spot.
     """
     sequence = read_sequence(folder) if (folder / DESCRIPTION).exists() else None
-    if trajectory is None:
-        trajectory = folder / TRAJECTORY
-        if not trajectory.exists():
-            raise InputError(
-                folder, "no trajectory", f"{TRAJECTORY} in it, or a file given by --trajectory"
-            )
-    poses = read_tum(trajectory)
+    source = trajectory or find_trajectory(folder)
+    if source is None:
+        raise InputError(
+            folder, "no trajectory", f"{TRAJECTORY} in it, or a file given by --trajectory"
+        )
+    poses = read_trajectory(source)
     place = layouts or folder / LAYOUTS
     files = list_layouts(place)
-    return build_scene(
+    scene = build_scene(
         name=sequence.name if sequence else folder.resolve().name or "scene",
         kind="sequence folder" if sequence else "trajectory and layouts",
-        trajectory=poses,
-        trajectory_source=trajectory,
+        trajectory=poses.trajectory,
+        trajectory_source=poses.path,
         panoramas=_panoramas(sequence, files),
         layouts=files,
         layouts_source=place,
         reader=read_layout,
         camera_height_m=sequence.camera_height_m if sequence else None,
     )
+    if poses.kind == "TUM":
+        return scene
+    told = f"{scene.association}, which come from {poses.path.name} ({poses.kind})"
+    return replace(scene, association=told)
 
 
 def read_truth(folder: Path) -> GroundTruth:

@@ -12,9 +12,9 @@ from panoplan.formats.mp3d_fpe import (
     read_mp3d_fpe_layout,
     read_mp3d_fpe_truth,
 )
-from panoplan.formats.tum import read_tum
 from panoplan.layouts.files import list_layouts, read_layout
 from panoplan.poses.associate import Panorama
+from panoplan.poses.files import read_trajectory
 from panoplan.types.truth import GroundTruth
 
 
@@ -56,7 +56,7 @@ def open_mp3d_fpe(
 
     Args:
         folder: `<root>/<scene>/<version>`.
-        trajectory: TUM file used instead of the odometry, labelled with frame ids.
+        trajectory: file of any program used instead of the odometry, labelled with frame ids.
         layouts: folder used instead of hn_mp3d/; the columns of its files have their centre at
             u + ½.
 
@@ -80,7 +80,9 @@ def open_mp3d_fpe(
     return build_scene(
         name=data.name,
         kind="MP3D-FPE scene",
-        trajectory=data.trajectory if trajectory is None else read_tum(trajectory),
+        trajectory=data.trajectory
+        if trajectory is None
+        else read_trajectory(trajectory).trajectory,
         trajectory_source=folder if trajectory is None else trajectory,
         panoramas=[Panorama(name) for name in ids],
         layouts=by_frame,

@@ -1,0 +1,1 @@
+"""Trajectories as other programs write them, one module a format."""
