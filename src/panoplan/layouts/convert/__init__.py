@@ -1,0 +1,1 @@
+"""Other people's layout networks become ONNX files that say what their outputs mean."""
