@@ -21,15 +21,18 @@ def add_parser(commands: Any) -> None:
         description="v1: the paper's tables on simulated buildings. accuracy: on simulated flats. "
         "metric: whether the ± of metres holds. home: on a scene with known truth. misplaced: one "
         "room's cameras of a tour shifted, on simulated flats or on a scene. runtime: time and "
-        "memory on a long walk. table: writes what they measured into a page.",
+        "memory on a long walk. odometry: on rendered walks. table: writes what they measured into a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
     parser.add_argument(
         "what",
-        choices=["v1", "accuracy", "metric", "home", "misplaced", "runtime", "table"],
+        choices=["v1", "accuracy", "metric", "home", "misplaced", "runtime", "odometry", "table"],
     )
     parser.add_argument(
-        "input", nargs="?", type=Path, help="home, misplaced: the scene; table: the page"
+        "input",
+        nargs="?",
+        type=Path,
+        help="home, misplaced: the scene; odometry: walks; table: the page",
     )
     parser.add_argument("--flats", type=int, default=20, metavar="N", help="seeds 0 to N-1 a grade")
     parser.add_argument("--trials", type=int, default=40, metavar="N", help="misplaced: how many")
@@ -54,12 +57,12 @@ def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     if options.what == "v1":
         return bench_v1.act(options)
-    from panoplan.bench import accuracy, home, metric, misplaced, runtime, table
+    from panoplan.bench import accuracy, home, metric, misplaced, odometry, runtime, table
     from panoplan.bench.record import record
     from panoplan.config import as_dict
 
-    if options.what in ("home", "table") and options.input is None:
-        raise InputError(f"bench {options.what}", "no path", "bench home SCENE or bench table PAGE")
+    if options.what in ("home", "odometry", "table") and options.input is None:
+        raise InputError(f"bench {options.what}", "no path", f"bench {options.what} PATH")
     if options.what == "table":
         changed = table.update(options.input, options.results)
         print(f"{options.input}: {'changed' if changed else 'as it was'}")
@@ -82,6 +85,8 @@ def act(options: argparse.Namespace) -> int:
                 figures = misplaced.measure_flats(range(trials), config, report)
             else:
                 figures = misplaced.measure_home(options.input, config, trials, report)
+        elif options.what == "odometry":
+            figures = odometry.measure(_walks(options.input), report)
         else:
             figures = runtime.measure(config, report)
     text = json.dumps(record(options.what, as_dict(config), figures), indent=1) + "\n"
@@ -91,6 +96,15 @@ def act(options: argparse.Namespace) -> int:
         write_text(options.output, text)
         print(options.output)
     return 0
+
+
+def _walks(path: Path) -> list[Path]:
+    """The walk, or the walks in a folder."""
+    if not path.is_dir():
+        raise InputError(path, "no folder", "a rendered walk, or a folder of them")
+    if (path / "trajectory_gt.tum").exists():
+        return [path]
+    return sorted(p for p in path.iterdir() if (p / "trajectory_gt.tum").exists())
 
 
 def _jobs(text: str) -> int:

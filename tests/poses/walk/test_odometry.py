@@ -78,6 +78,20 @@ def test_walks_in_two_places_are_two_maps(walk_features, walk_pictures, walk_pos
     assert off.max() < 0.05
 
 
+def test_two_maps_of_one_place_are_joined_at_the_end(walk_features, walk_poses):
+    # From both ends to the middle: the ends have nothing in common before.
+    count = len(walk_features)
+    order = [*range(6), *range(count - 1, 5, -1)]
+    odometry = Odometry(WIDTH, HEIGHT)
+    begun = {told.map for n in order for told in odometry.add(walk_features[n])}
+    assert len(begun) == 2
+    odometry.finish()
+    (poses,) = odometry.poses()
+    assert len(poses) == count
+    off, _ = errors({order[n]: pose for n, pose in poses.items()}, walk_poses)
+    assert off.max() < 0.03
+
+
 def test_a_lost_camera_finds_its_place_again(walk_features, walk_poses):
     blank = type(walk_features[0])(
         np.zeros((0, 2)), np.zeros((0, 128), np.float32), np.zeros((0, 128), np.float32)

@@ -114,6 +114,10 @@ class Map:
             2, 0.0005, self._options, self._global, self._triangulation, False
         )
 
+    def release(self, number: int) -> None:
+        """Takes a panorama's pose and observations away."""
+        self._mapper.observation_manager.deregister_frame(number)
+
     def knows(self, number: int) -> bool:
         """Whether a panorama was taken in, with or without a pose."""
         return bool(self.reconstruction.exists_image(number))

@@ -6,6 +6,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from panoplan.geometry.similarity import fit_similarity
 from panoplan.poses.walk.features import Features, Places, matches
 from panoplan.poses.walk.map import Map, verified
 from panoplan.types.pose import Pose
@@ -13,6 +16,8 @@ from panoplan.types.pose import Pose
 _RECENT_ARE_NO_LOOPS = 3
 _LOST_LOOKUPS = 3
 _WAITING_TRIED = 8
+_FEWEST_JOINED = 3
+_JOIN_TOLERANCE = 0.05
 
 
 @dataclass(frozen=True)
@@ -112,21 +117,72 @@ class Odometry:
 
     def poses(self) -> list[dict[int, Pose]]:
         """Poses by number of each map as known now, the largest map first."""
-        told = [{n: known.pose(n) for n in known.numbers()} for known in self._maps]
+        told = [
+            {n: known.pose(n) for n in known.numbers() if self._map_of.get(n) == k}
+            for k, known in enumerate(self._maps)
+        ]
         return sorted((poses for poses in told if poses), key=lambda poses: -len(poses))
 
     def finish(self) -> list[Placed]:
-        """Adjusts every map as a whole and tries once more what has no pose.
+        """Adjusts every map as a whole, joins maps, and tries once more what has no pose.
+
+        Two maps are joined where panoramas of the smaller one see the points of the larger one
+        and find poses there that agree with those they had.
 
         Returns:
             What got a pose by it.
         """
         for k in range(len(self._maps)):
             self._adjust(k)
+        by_size = sorted(range(len(self._maps)), key=lambda k: len(self._maps[k].numbers()))
+        for place, small in enumerate(by_size):
+            # The largest one first; what has joined one is in no other.
+            for large in reversed(by_size[place + 1 :]):
+                if self._join(small, large):
+                    break
         placed = self._place_waiting(self._waiting)
         for k in {told.map for told in placed}:
             self._adjust(k)
         return placed
+
+    def _join(self, small: int, large: int) -> bool:
+        """Moves the panoramas of one map that fit into another one; whether it did."""
+        members = {n for n, k in self._map_of.items() if k == small}
+        moved = self._registered_in(large, members)
+        if len(moved) < _FEWEST_JOINED or not self._agree(moved, small, large):
+            for number in moved:
+                self._maps[large].release(number)
+            return False
+        for number in moved:
+            self._map_of[number] = large
+        self._adjust(large)
+        return True
+
+    def _registered_in(self, large: int, members: set[int]) -> list[int]:
+        """Registers panoramas in another map, from those it shares points with onwards."""
+        known = self._maps[large]
+        moved: list[int] = []
+        progress = True
+        while progress:
+            progress = False
+            for number in sorted(members - set(moved)):
+                if not any(known.has(n) for n in self._neighbours[number]):
+                    continue
+                self._tell(known, number)
+                if known.register(number):
+                    moved.append(number)
+                    progress = True
+        return moved
+
+    def _agree(self, numbers: list[int], small: int, large: int) -> bool:
+        """Whether poses in two maps differ by a similarity only."""
+        here, there = (
+            np.array([self._maps[k].pose(n).translation for n in numbers]) for k in (small, large)
+        )
+        fit = fit_similarity(here, there)
+        off = np.linalg.norm(fit(here) - there, axis=1)
+        extent = np.linalg.norm(there - there.mean(axis=0), axis=1)
+        return bool(np.median(off) <= _JOIN_TOLERANCE * np.median(extent))
 
     def _new_map(self) -> Map:
         return Map(*self._size, self.settings.least_map_inliers)

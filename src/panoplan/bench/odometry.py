@@ -1,0 +1,132 @@
+"""Accuracy and speed of odometry on walks whose true poses are known."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from panoplan.datasets.detect import image_files
+from panoplan.errors import InputError
+from panoplan.formats.sequence import TRUE_TRAJECTORY
+from panoplan.formats.tum import read_tum
+from panoplan.geometry.similarity import fit_similarity
+from panoplan.intake.panoramas import Panoramas
+from panoplan.pipeline import Progress
+from panoplan.poses.associate import Panorama, associate
+from panoplan.poses.walk.carried import carried
+from panoplan.poses.walk.features import Extractor, sharpness
+from panoplan.poses.walk.follow import HEIGHT, WIDTH, working_grey
+from panoplan.poses.walk.keyframes import EVERY_IMAGE, KeyframeChooser
+from panoplan.poses.walk.odometry import Odometry
+from panoplan.types.pose import Pose, Trajectory
+
+_ENDS = 50
+_GROSS_M, _GROSS_DEG = 0.10, 2.0
+
+
+def measure(folders: Sequence[Path], report: Progress) -> list[dict[str, Any]]:
+    """Follows walks and compares with the truth.
+
+    Args:
+        folders: each with images and trajectory_gt.tum.
+        report: is told how far the work has come.
+
+    Returns:
+        A walk's figures each: keyframes with a pose in the largest map, error of their positions
+        after a similarity, in cm and in percent of the way, for the poses at the time they were
+        given and for the final ones; seconds of processor time a keyframe.
+
+    Raises:
+        InputError: images or true poses are missing.
+        MissingExtraError: pycolmap is not installed.
+    """
+    return [_walk(folder, report) for folder in folders]
+
+
+def _walk(folder: Path, report: Progress) -> dict[str, Any]:
+    images = image_files(folder)
+    if not images:
+        raise InputError(folder, "no image", "a rendered walk")
+    truth = _truth(folder, [path.stem for path in images])
+    panoramas = Panoramas.of_images(folder, images)
+    mask = carried(panoramas.sample(), WIDTH, HEIGHT)
+    extract = Extractor(mask=None if mask is None else ~mask)
+    choose = KeyframeChooser(WIDTH, HEIGHT, EVERY_IMAGE)
+    odometry = Odometry(WIDTH, HEIGHT)
+    names: list[str] = []
+    given: dict[int, dict[int, Pose]] = {}
+    seconds = []
+    for seen in panoramas:
+        started = time.process_time()
+        grey = working_grey(seen.pixels)
+        features = extract(grey)
+        if not choose(features, sharpness(grey)):
+            continue
+        names.append(seen.name)
+        for told in odometry.add(features):
+            given.setdefault(told.map, {})[told.number] = told.pose
+        seconds.append(time.process_time() - started)
+        report(len(names), len(images), folder.name)
+    started = time.process_time()
+    odometry.finish()
+    finishing = time.process_time() - started
+    final = odometry.poses()
+    largest = max(given.values(), key=len, default={})
+    return {
+        "scene": folder.name,
+        "frames": len(images),
+        "keyframes": len(names),
+        "maps": [len(poses) for poses in final],
+        "lost": len(odometry.lost),
+        "masked_share": 0.0 if mask is None else float(mask.mean()),
+        "final": _errors(final[0], names, truth) if final else None,
+        "as_given": _errors(largest, names, truth) if largest else None,
+        "cpu_s_a_keyframe": _spread(seconds),
+        "cpu_s_first": _spread(seconds[:_ENDS]),
+        "cpu_s_last": _spread(seconds[-_ENDS:]),
+        "cpu_s_finishing": finishing,
+        "keyframes_a_cpu_second": len(seconds) / max(sum(seconds), 1e-9),
+    }
+
+
+def _truth(folder: Path, names: list[str]) -> dict[str, Pose]:
+    source = folder / TRUE_TRAJECTORY
+    true: Trajectory = read_tum(source)
+    panoramas = [Panorama(name, order=k) for k, name in enumerate(names)]
+    matched = associate(true.labels, panoramas, source).panoramas
+    return {p.id: true[k] for k, p in enumerate(matched) if p is not None}
+
+
+def _errors(poses: dict[int, Pose], names: list[str], truth: dict[str, Pose]) -> dict[str, Any]:
+    numbers = [n for n in sorted(poses) if names[n] in truth]
+    true = [truth[names[n]] for n in numbers]
+    positions = np.array([poses[n].translation for n in numbers])
+    places = np.array([pose.translation for pose in true])
+    fit = fit_similarity(positions, places)
+    off_m = np.linalg.norm(fit(positions) - places, axis=1)
+    turns = [fit.rotation @ poses[n].rotation for n in numbers]
+    cosines = [
+        (np.trace(pose.rotation.T @ turn) - 1) / 2 for pose, turn in zip(true, turns, strict=True)
+    ]
+    off_deg = np.degrees(np.arccos(np.clip(cosines, -1, 1)))
+    length = float(np.linalg.norm(np.diff(places, axis=0), axis=1).sum())
+    rmse = float(np.sqrt(np.mean(off_m**2)))
+    return {
+        "poses": len(numbers),
+        "length_m": length,
+        "ate_cm": 100 * rmse,
+        "ate_percent_of_length": 100 * rmse / max(length, 1e-9),
+        "worst_cm": 100 * float(off_m.max()),
+        "median_deg": float(np.median(off_deg)),
+        "worst_deg": float(off_deg.max()),
+        "gross": int(np.sum((off_m > _GROSS_M) | (off_deg > _GROSS_DEG))),
+    }
+
+
+def _spread(values: list[float]) -> dict[str, float]:
+    median, high = np.percentile(values or [0.0], [50, 95])
+    return {"median": float(median), "95 %": float(high)}
