@@ -201,7 +201,7 @@ def test_an_mp3d_fpe_scene_that_cannot_be_used(spoil, told, fpe, tmp_path, capsy
     ("words", "told"),
     [
         (["--trajectory", "{room}/none.tum"], "none.tum: found nothing"),
-        (["--trajectory", "{room}"], "room: found a folder"),
+        (["--trajectory", "{room}/layouts_pred"], "layouts_pred: found a folder without"),
         (["--layouts", "{room}/none"], "none: found no folder"),
         (["--layouts", "{room}/trajectory.tum"], "trajectory.tum: found no folder"),
         (["--config", "{room}/sequence.json"], "sequence.json: found broken TOML"),
