@@ -1234,8 +1234,193 @@ class TourConfig:
     evidence_cap: float = _setting(
         6.0, "Most evidence of such a cell.", unit="nats", low=0.1, high=100.0
     )
+    surface_cap: float = _setting(
+        8.0,
+        "Most evidence of all that lies on one floor or ceiling: tiles repeat themselves.",
+        unit="nats",
+        low=0.1,
+        high=1000.0,
+    )
     hypotheses: int = _setting(
         5, "Yaws with directions that are kept of two photos.", low=1, high=100
+    )
+    wall_width_deg: float = _setting(
+        3.0,
+        "Pieces of a layout's walls within this of a common heading count for it.",
+        unit="deg",
+        low=0.1,
+        high=20.0,
+    )
+    wall_sigma_deg: float = _setting(
+        0.7,
+        "Standard deviation of the heading of a layout's walls.",
+        unit="deg",
+        low=0.05,
+        high=10.0,
+    )
+    wall_share: float = _setting(
+        0.5,
+        "Where less than this share of the walls runs along one heading or across it, it is "
+        "believed less.",
+        low=0.01,
+        high=1.0,
+    )
+    right_angle_share: float = _setting(
+        0.8,
+        "Probability that the walls of two rooms are at right angles: a prior, not a rule.",
+        low=0.0,
+        high=0.99,
+    )
+    shortest_ch: float = _setting(
+        0.05, "Least distance of two photos.", unit="camera heights", low=1e-3, high=10.0
+    )
+    longest_ch: float = _setting(
+        12.0,
+        "Photos farther apart than this are not compared.",
+        unit="camera heights",
+        low=1.0,
+        high=1000.0,
+    )
+    length_cap: float = _setting(
+        3.0,
+        "Most evidence of a cell of matches for a distance.",
+        unit="nats",
+        low=0.1,
+        high=100.0,
+    )
+    length_surface_cap: float = _setting(
+        4.0,
+        "Most evidence of all matches on floor and ceiling for a distance.",
+        unit="nats",
+        low=0.1,
+        high=1000.0,
+    )
+    usual_ch: float = _setting(
+        0.7,
+        "Photos nearer than this are less likely the nearer they are.",
+        unit="camera heights",
+        low=0.01,
+        high=10.0,
+    )
+    usual_spread: float = _setting(
+        0.8, "By so much, as a standard deviation of the logarithm.", low=0.1, high=10.0
+    )
+    length_modes: int = _setting(4, "Distances that are kept of a hypothesis.", low=1, high=50)
+    length_drop: float = _setting(
+        12.0,
+        "Distances of so much less evidence than the best one are dropped.",
+        unit="nats",
+        low=0.0,
+        high=1000.0,
+    )
+    wall_patches: float = _setting(
+        16.0,
+        "So many independent pieces a layout's boundary is worth: its errors are alike over 27°.",
+        low=1.0,
+        high=1000.0,
+    )
+    same_room: float = _setting(
+        0.4, "Probability that two photos compared are of one room.", low=0.01, high=0.99
+    )
+    walls_cap: float = _setting(
+        10.0,
+        "Most evidence of two rooms' walls: rectangles fit rectangles.",
+        unit="nats",
+        low=0.0,
+        high=1000.0,
+    )
+    candidate_evidence: float = _setting(
+        8.0,
+        "Relative poses of two photos with less evidence are not tried.",
+        unit="nats",
+        low=0.0,
+        high=1000.0,
+    )
+    chance_evidence: float = _setting(
+        3.0,
+        "Taken from what the matches of a pair say: so much they find by chance at one time in a "
+        "hundred.",
+        unit="nats",
+        low=0.0,
+        high=100.0,
+    )
+    placings: int = _setting(
+        40, "So many relative poses are tried to lay one group onto another.", low=1, high=10_000
+    )
+    trial_evidence: float = _setting(
+        20.0,
+        "Places of a group with less evidence are not settled: the search over yaws, directions "
+        "and distances alone finds about 12 by chance.",
+        unit="nats",
+        low=0.0,
+        high=1000.0,
+    )
+    merge_evidence: float = _setting(
+        38.0,
+        "Least evidence gained by merging two groups, over all pairs across. On rendered tours, "
+        "whose tiles, doors and lamps repeat themselves, wrong merges gain less or do not lead.",
+        unit="nats",
+        low=0.0,
+        high=1e9,
+    )
+    merge_margin: float = _setting(
+        10.0,
+        "Least lead over the second-best place.",
+        unit="nats",
+        low=0.0,
+        high=1000.0,
+    )
+    rivals: int = _setting(
+        5, "So many places of a group are settled and compared.", low=2, high=1000
+    )
+    rival_share: float = _setting(
+        0.4,
+        "Places of less than this share of the best one's evidence are no rivals: a pose graph "
+        "adds to what was told with an error, not to what is wrong.",
+        low=0.0,
+        high=1.0,
+    )
+    place_apart_ch: float = _setting(
+        0.35, "Places farther apart than this are two.", unit="camera heights", low=0.0, high=10.0
+    )
+    place_apart_deg: float = _setting(
+        6.0, "Headings farther apart than this are two.", unit="deg", low=0.0, high=90.0
+    )
+    edge_evidence: float = _setting(
+        10.0,
+        "Hypotheses with more evidence take part in the pose graph where they are near its poses.",
+        unit="nats",
+        low=0.0,
+        high=1000.0,
+    )
+    near_yaw_deg: float = _setting(6.0, "How near that is in yaw.", unit="deg", low=0.0, high=90.0)
+    near_direction_deg: float = _setting(
+        15.0, "How near that is in direction.", unit="deg", low=0.0, high=90.0
+    )
+    yaw_floor_deg: float = _setting(
+        0.3,
+        "Added to the standard deviation of a yaw: tilt is common to all matches of a photo.",
+        unit="deg",
+        low=0.0,
+        high=10.0,
+    )
+    direction_floor_deg: float = _setting(
+        0.7,
+        "Added to that of a direction: cameras differ in height and tilt.",
+        unit="deg",
+        low=0.0,
+        high=10.0,
+    )
+    length_floor: float = _setting(0.05, "Added to that of a length, relative.", low=0.0, high=1.0)
+    graph_rounds: int = _setting(
+        2, "So often the pose graph is solved, with what pairs tell found anew.", low=1, high=100
+    )
+    graph_loss: float = _setting(
+        2.0,
+        "Scale of the pose graph's Cauchy loss.",
+        unit="standard deviations",
+        low=0.1,
+        high=100.0,
     )
     apart_deg: float = _setting(
         8.0, "Hypotheses nearer one another than this are one.", unit="deg", low=0.1, high=90.0

@@ -45,6 +45,24 @@ class UprightFit(NamedTuple):
     information: FloatArray
 
 
+class Caps(NamedTuple):
+    """How much evidence matches that are not independent give at most, in either image.
+
+    Attributes:
+        cell: side of a cell of directions, rad.
+        a_cell: of the matches of one cell, nats: a poster must not decide.
+        a_surface: of the matches of one level surface, nats: floors and ceilings repeat themselves.
+    """
+
+    cell: float
+    a_cell: float
+    a_surface: float
+
+
+WALL, FLOOR, CEILING = 0, 1, 2
+"""What a match lies on; on walls, or where it is not known, only cells are capped."""
+
+
 def vote(
     matches: FloatArray,
     prior: FloatArray,
@@ -75,11 +93,11 @@ def vote(
 def refine(
     matches: FloatArray,
     prior: FloatArray,
+    surfaces: IntArray,
     yaw: float,
     direction: float,
     sigma: float,
-    cell: float,
-    cap: float,
+    caps: Caps,
     widths: tuple[float, ...] = (3.0, 2.0, 1.4, 1.0, 1.0, 1.0),
 ) -> UprightFit:
     """The best yaw and direction near a start.
@@ -87,17 +105,19 @@ def refine(
     Args:
         matches: as `vote`.
         prior: as `vote`.
+        surfaces: (M,) WALL, FLOOR or CEILING.
         yaw: start, rad.
         direction: start, rad.
         sigma: standard deviation of an angle, rad.
-        cell: side of the cells of directions whose evidence is capped, rad.
-        cap: most evidence of a cell, in either image, nats.
+        caps: on the evidence.
         widths: factors on sigma, one a step.
 
     Returns:
         The fit.
     """
-    found = _refine(_prepared(matches), prior, yaw, direction, sigma, cell, cap, np.array(widths))
+    found = _refine(
+        _prepared(matches), prior, surfaces, yaw, direction, sigma, *caps, np.array(widths)
+    )
     information = np.array([[found[4], found[5]], [found[5], found[6]]])
     return UprightFit(found[0], found[1], found[2], found[3], information)
 
@@ -105,13 +125,38 @@ def refine(
 def evidence(
     matches: FloatArray,
     prior: FloatArray,
+    surfaces: IntArray,
     yaw: float,
     direction: float,
     sigma: float,
-    cell: float,
-    cap: float,
+    caps: Caps,
 ) -> tuple[float, float, FloatArray]:
     """How much more likely matches are at a yaw and direction than by chance.
+
+    Args:
+        matches: as `vote`.
+        prior: as `vote`.
+        surfaces: (M,) WALL, FLOOR or CEILING.
+        yaw: rad.
+        direction: rad.
+        sigma: standard deviation of an angle, rad.
+        caps: on the evidence.
+
+    Returns:
+        Log likelihood ratio in nats, the smaller of both images' sums, never below 0 (no match
+        need be an inlier); the share of inliers; (M,) probability of each match to be one.
+    """
+    inlier = np.zeros(len(matches))
+    total, share = _evidence(
+        _prepared(matches), prior, surfaces, yaw, direction, sigma, *caps, inlier
+    )
+    return total, share, inlier
+
+
+def pull(
+    matches: FloatArray, prior: FloatArray, yaw: float, direction: float, sigma: float
+) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """Where matches pull a yaw and a direction, as least squares has it.
 
     Args:
         matches: as `vote`.
@@ -119,16 +164,14 @@ def evidence(
         yaw: rad.
         direction: rad.
         sigma: standard deviation of an angle, rad.
-        cell: side of the cells of directions whose evidence is capped, rad.
-        cap: most evidence of a cell, in either image, nats.
 
     Returns:
-        Log likelihood ratio in nats, the smaller of both images' sums, never below 0 (no match
-        need be an inlier); the share of inliers; (M,) probability of each match to be one.
+        (2, 2) information of yaw and direction, (2,) information times the step to the optimum,
+        and (M,) probability of each match to be an inlier.
     """
-    inlier = np.zeros(len(matches))
-    total, share = _evidence(_prepared(matches), prior, yaw, direction, sigma, cell, cap, inlier)
-    return total, share, inlier
+    inlier = np.empty(len(matches))
+    a, b, d, gy, gd = _pull(_prepared(matches), prior, yaw, direction, sigma, inlier)
+    return np.array([[a, b], [b, d]]), np.array([gy, gd]), inlier
 
 
 def _prepared(matches: FloatArray) -> FloatArray:
@@ -231,25 +274,28 @@ def _share(ratio):
 
 
 @njit(cache=True)
-def _capped(rows, terms, cell, cap):
-    """Sum of terms, at most `cap` a cell; the smaller one of both images."""
+def _capped(rows, terms, surfaces, cell, a_cell, a_surface):
+    """Sum of terms, capped a cell and a level surface; the smaller one of both images."""
     across, up = int(np.ceil(2.0 * np.pi / cell)), int(np.ceil(np.pi / cell))
     smaller = np.inf
     for image in range(2):
-        sums = np.zeros(across * up)
+        sums = np.zeros((3, across * up))
         for k in range(rows.shape[0]):
             i = int((rows[k, 8 + image] + np.pi) / cell) % across
             j = min(up - 1, max(0, int((rows[k, 6 + image] + 0.5 * np.pi) / cell)))
-            sums[i * up + j] += terms[k]
+            sums[surfaces[k], i * up + j] += terms[k]
         total = 0.0
-        for value in sums:
-            total += min(value, cap)
+        for surface in range(3):
+            here = 0.0
+            for value in sums[surface]:
+                here += min(value, a_cell)
+            total += here if surface == WALL else min(here, a_surface)
         smaller = min(smaller, total)
     return smaller
 
 
 @njit(cache=True)
-def _evidence(rows, prior, yaw, direction, sigma, cell, cap, inlier):
+def _evidence(rows, prior, surfaces, yaw, direction, sigma, cell, a_cell, a_surface, inlier):
     count = rows.shape[0]
     ratio, off = np.empty(count), np.empty(count)
     variance, slope = np.empty(count), np.empty(count)
@@ -260,29 +306,37 @@ def _evidence(rows, prior, yaw, direction, sigma, cell, cap, inlier):
         mixed = 1.0 - share + share * ratio[k]
         terms[k] = np.log(mixed)
         inlier[k] = share * ratio[k] / mixed
-    return max(0.0, _capped(rows, terms, cell, cap)), share
+    return max(0.0, _capped(rows, terms, surfaces, cell, a_cell, a_surface)), share
 
 
 @njit(cache=True)
-def _refine(rows, prior, yaw, direction, sigma, cell, cap, widths):
+def _pull(rows, prior, yaw, direction, sigma, inlier):
     count = rows.shape[0]
     ratio, off = np.empty(count), np.empty(count)
     variance, slope = np.empty(count), np.empty(count)
+    _ratios(rows, prior, yaw, direction, sigma, ratio, off, variance, slope)
+    share = _share(ratio)
+    a = d = 1e-9
+    b = gy = gd = 0.0
+    for k in range(count):
+        lifted = share * ratio[k]
+        inlier[k] = lifted / (1.0 - share + lifted)
+        w = inlier[k] / variance[k]
+        # The told direction less the direction: J = (slope, -1).
+        a += w * slope[k] * slope[k]
+        b -= w * slope[k]
+        d += w
+        gy -= w * slope[k] * off[k]
+        gd += w * off[k]
+    return a, b, d, gy, gd
+
+
+@njit(cache=True)
+def _refine(rows, prior, surfaces, yaw, direction, sigma, cell, a_cell, a_surface, widths):
+    inlier = np.empty(rows.shape[0])
     a = b = d = 0.0
     for width in widths:
-        _ratios(rows, prior, yaw, direction, width * sigma, ratio, off, variance, slope)
-        share = _share(ratio)
-        a = b = d = 1e-9
-        b = gy = gd = 0.0
-        for k in range(count):
-            lifted = share * ratio[k]
-            w = lifted / (1.0 - share + lifted) / variance[k]
-            # The told direction less the direction: J = (slope, -1).
-            a += w * slope[k] * slope[k]
-            b -= w * slope[k]
-            d += w
-            gy -= w * slope[k] * off[k]
-            gd += w * off[k]
+        a, b, d, gy, gd = _pull(rows, prior, yaw, direction, width * sigma, inlier)
         determinant = a * d - b * b
         if determinant > 1e-12 * a * d:
             step_yaw = (d * gy - b * gd) / determinant
@@ -292,8 +346,9 @@ def _refine(rows, prior, yaw, direction, sigma, cell, cap, widths):
             damp = min(1.0, 0.05 / most) if most > 0.0 else 1.0
             yaw += damp * step_yaw
             direction += damp * step_direction
-    inlier = np.empty(count)
-    total, share = _evidence(rows, prior, yaw, direction, sigma, cell, cap, inlier)
+    total, share = _evidence(
+        rows, prior, surfaces, yaw, direction, sigma, cell, a_cell, a_surface, inlier
+    )
     yaw = (yaw + np.pi) % (2.0 * np.pi) - np.pi
     direction = (direction + np.pi) % (2.0 * np.pi) - np.pi
     return yaw, direction, total, share, a, b, d

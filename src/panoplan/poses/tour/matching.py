@@ -56,12 +56,39 @@ def match(a: Features, b: Features, config: TourConfig) -> Matches:
     order = order[ratio[order] < config.max_ratio]
     for side, column in ((a, 0), (b, 1)):
         order = order[_first_of_cells(side, pair[order, column], config)]
-    pair = pair[order[: config.max_matches]]
-    angles = np.column_stack(
-        [a.headings[pair[:, 0]], a.elevations[pair[:, 0]],
-         b.headings[pair[:, 1]], b.elevations[pair[:, 1]]]
-    )  # fmt: skip
-    return Matches(angles, np.ones(len(pair)))
+    order = order[: config.max_matches]
+    i, j = pair[order].T
+    angles = np.column_stack([a.headings[i], a.elevations[i], b.headings[j], b.elevations[j]])
+    sizes = np.log(a.sizes[i] / b.sizes[j])
+    return Matches(angles, _distinct(ratio[order]) * _sized(sizes, angles))
+
+
+def _distinct(ratio: FloatArray) -> FloatArray:
+    """Likelihood ratio of a match by how much nearer its neighbour is than the second one.
+
+    Fitted to rendered tours: of matches at .9 as many are right as wrong ones would be, at .65
+    nine times as many.
+    """
+    return np.exp(np.minimum(_MOST_DISTINCT, _DISTINCT_SLOPE * (_NEUTRAL_RATIO - ratio)))
+
+
+_DISTINCT_SLOPE, _NEUTRAL_RATIO, _MOST_DISTINCT = 10.0, 0.87, 3.5
+
+
+def _sized(log_sizes: FloatArray, angles: FloatArray) -> FloatArray:
+    """Likelihood ratio of a match by the sizes of its features.
+
+    A thing at elevation φ is its height over sin|φ| away, whatever the height; seen from two
+    cameras of one height its sizes are as these sines.
+    """
+    sines = np.sin(np.abs(angles[:, [1, 3]]))
+    off = log_sizes - np.log(sines[:, 0] / sines[:, 1])
+    true, chance = (np.exp(-0.5 * (off / s) ** 2) / s for s in (_SIZE_SIGMA, _SIZE_SPREAD))
+    return _SIZED * true / np.maximum(chance, 1e-12) + 1.0 - _SIZED
+
+
+_SIZED, _SIZE_SIGMA, _SIZE_SPREAD = 0.8, 0.3, 0.8
+"""Share of matches whose sizes tell; standard deviation of the logarithms, and by chance."""
 
 
 def _unit(descriptors: NDArray[np.uint8]) -> NDArray[np.float32]:

@@ -6,9 +6,9 @@ import numpy as np
 
 from panoplan.config import TourConfig
 from panoplan.geometry.angles import wrapped
-from panoplan.geometry.upright import UprightFit, refine, vote
+from panoplan.geometry.upright import Caps, UprightFit, refine, vote
 from panoplan.poses.tour.matching import Matches
-from panoplan.types.arrays import FloatArray
+from panoplan.types.arrays import FloatArray, IntArray
 
 _PEAKS = 24
 """Peaks of the vote that are refined; the vote itself caps no cell, so the best may not lead."""
@@ -16,12 +16,13 @@ _FEWEST = 4
 
 
 def hypotheses(
-    matches: Matches, yaw_prior: FloatArray, config: TourConfig
+    matches: Matches, surfaces: IntArray, yaw_prior: FloatArray, config: TourConfig
 ) -> tuple[UprightFit, ...]:
     """Yaws and directions that the matches of two panoramas agree upon.
 
     Args:
         matches: of the two.
+        surfaces: (M,) WALL, FLOOR or CEILING, what each match lies on.
         yaw_prior: (Y,) log prior of the yaws 2π·k/Y.
         config: settings.
 
@@ -38,11 +39,11 @@ def hypotheses(
         refine(
             matches.angles,
             matches.prior,
+            surfaces,
             2 * np.pi * y / len(yaw_prior),
             2 * np.pi * d / directions,
             sigma,
-            np.deg2rad(config.evidence_cell_deg),
-            config.evidence_cap,
+            caps(config),
         )
         for y, d in _peaks(grid, config)
     ]
@@ -53,6 +54,11 @@ def hypotheses(
         if fit.evidence > 0 and all(_apart(fit, other) > config.apart_deg for other in kept):
             kept.append(fit)
     return tuple(kept[: config.hypotheses])
+
+
+def caps(config: TourConfig) -> Caps:
+    """The caps on evidence that the settings ask for."""
+    return Caps(np.deg2rad(config.evidence_cell_deg), config.evidence_cap, config.surface_cap)
 
 
 def _peaks(grid: FloatArray, config: TourConfig) -> list[tuple[int, int]]:
