@@ -12,7 +12,7 @@ from panoplan.errors import InputError
 
 if TYPE_CHECKING:
     from panoplan.pipeline import Progress
-    from panoplan.simulate.scene import SimulatedScene
+    from panoplan.simulate.scene import Grade, SimulatedScene
 
 _MOST_SCENES = 10_000
 
@@ -36,7 +36,11 @@ def add_parser(commands: Any) -> None:
     parser.add_argument(
         "--scenes", type=int, metavar="K", help="seeds from --seed on, a folder each in the output"
     )
-    parser.add_argument("--grade", choices=["exact", "mild", "hard"], default="mild")
+    parser.add_argument(
+        "--grade",
+        choices=["exact", "mild", "hard", "measured"],
+        help="of the errors (default: measured for a family, mild for a plain flat)",
+    )
     parser.add_argument("--stills", action="store_true", help="sparse photos instead of a walk")
     parser.add_argument(
         "--rooms", type=int, choices=range(5, 10), metavar="5-9", help="rooms of a plain flat"
@@ -94,9 +98,14 @@ def _scene(options: argparse.Namespace, seed: int) -> SimulatedScene:
     from panoplan.simulate.scene import simulate_flat
 
     if options.family is not None:
-        return simulate_scene(options.family, seed, options.grade, stills=options.stills)
+        grade: Grade = options.grade or "measured"
+        return simulate_scene(options.family, seed, grade, as_stills=options.stills)
     return simulate_flat(
-        seed, options.grade, stills=options.stills, rooms=options.rooms, step_m=options.step
+        seed,
+        options.grade or "mild",
+        stills=options.stills,
+        rooms=options.rooms,
+        step_m=options.step,
     )
 
 

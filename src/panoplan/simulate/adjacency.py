@@ -50,7 +50,10 @@ class SharedWall:
 
 
 def shared_walls(
-    polygons: Sequence[FloatArray], max_thickness: float = 0.35, min_length: float = 0.3
+    polygons: Sequence[FloatArray],
+    max_thickness: float = 0.35,
+    min_length: float = 0.3,
+    max_turn: float = _PARALLEL_RAD,
 ) -> list[SharedWall]:
     """All stretches where a wall of one room faces a parallel wall of another.
 
@@ -58,6 +61,7 @@ def shared_walls(
         polygons: rooms, (N, 2) each, counter-clockwise, metres.
         max_thickness: faces farther apart than this (metres) are no wall.
         min_length: shorter stretches (metres) are left out.
+        max_turn: faces that differ more in direction (rad) are not parallel.
 
     Returns:
         The stretches, by room pair.
@@ -69,7 +73,9 @@ def shared_walls(
         near = np.all((low <= high[i] + max_thickness) & (high >= low[i] - max_thickness), axis=1)
         for j in np.flatnonzero(near).tolist():
             if j > i:
-                found += _between((i, j), polygons[i], polygons[j], max_thickness, min_length)
+                found += _between(
+                    (i, j), polygons[i], polygons[j], max_thickness, min_length, max_turn
+                )
     return found
 
 
@@ -79,6 +85,7 @@ def _between(
     second: FloatArray,
     max_thickness: float,
     min_length: float,
+    max_turn: float,
 ) -> list[SharedWall]:
     found = []
     for a, b in zip(first, np.roll(first, -1, axis=0), strict=True):
@@ -89,7 +96,7 @@ def _between(
             opposite = (d - c) / np.hypot(*(d - c))
             turn = abs(along[0] * opposite[1] - along[1] * opposite[0])
             gap = float(outward @ ((c + d) / 2 - a))
-            if along @ opposite > 0 or turn > _PARALLEL_RAD or not 0 < gap <= max_thickness:
+            if along @ opposite > 0 or turn > max_turn or not 0 < gap <= max_thickness:
                 continue
             start = max(0.0, float(along @ (d - a)))
             end = min(length, float(along @ (c - a)))

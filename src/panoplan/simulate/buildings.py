@@ -129,20 +129,41 @@ class Window:
 
 
 @dataclass(frozen=True, eq=False)
+class BlindDoor:
+    """A door or an opening with nothing of the building behind it: to the street, to a cupboard.
+
+    Attributes:
+        kind: "door" or "opening".
+        room: index of its room.
+        segment: (2, 2) on the room's wall, metres.
+    """
+
+    kind: PassageKind
+    room: int
+    segment: FloatArray
+
+    def __post_init__(self) -> None:
+        """Copies and checks the segment."""
+        object.__setattr__(self, "segment", frozen_array("segment", self.segment, (2, 2)))
+
+
+@dataclass(frozen=True, eq=False)
 class Building:
     """One storey of a building, in metres, plan frame (x, z).
 
     Attributes:
         name: what it is called.
         rooms: disjoint.
-        passages: doors and openings between them, at most one a pair of rooms.
+        passages: doors and openings between them.
         windows: in outer walls.
+        blind_doors: doors and openings to what is no part of the building.
     """
 
     name: str
     rooms: tuple[InteriorRoom, ...]
     passages: tuple[Passage, ...] = ()
     windows: tuple[Window, ...] = ()
+    blind_doors: tuple[BlindDoor, ...] = ()
 
     @property
     def doors(self) -> tuple[Passage, ...]:
@@ -199,6 +220,9 @@ class Building:
             ),
             passages=tuple(replace(p, faces=p.faces @ rotation.T + shift) for p in self.passages),
             windows=tuple(replace(w, segment=w.segment @ rotation.T + shift) for w in self.windows),
+            blind_doors=tuple(
+                replace(d, segment=d.segment @ rotation.T + shift) for d in self.blind_doors
+            ),
         )
 
 

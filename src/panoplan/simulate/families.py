@@ -9,10 +9,12 @@ from scipy.special import ndtri
 
 from panoplan.errors import InputError
 from panoplan.simulate.buildings import Building
+from panoplan.simulate.film import film
 from panoplan.simulate.houses import Style, make_house
 from panoplan.simulate.joining import Joinery
 from panoplan.simulate.noise import NoiseModel
-from panoplan.simulate.scene import Grade, SimulatedScene, simulate
+from panoplan.simulate.scene import Grade, SimulatedScene, noise_model, recorded
+from panoplan.simulate.walks import stills
 
 TUNING_SEEDS = range(25)
 """Scenes to develop on."""
@@ -82,7 +84,7 @@ _MP3D_FPE = Family(
         feature_share=0.5,
         pillared_m2=45.0,
         ceiling_m=(2.5, 3.4),
-        doors=Joinery(0.5, 0.3, (0.75, 1.1), 0.15, 5.0),
+        doors=Joinery(0.6, 0.3, (0.75, 1.1), 0.15, 5.0),
     ),
     heavy_tailed=True,
     rooms_law=(2.40, 0.665),
@@ -106,7 +108,7 @@ _FLAT = Family(
         feature_share=0.35,
         pillared_m2=28.0,
         ceiling_m=(2.35, 2.9),
-        doors=Joinery(0.45, 0.2, (0.7, 0.95), 0.03, 3.0),
+        doors=Joinery(0.7, 0.3, (0.7, 0.95), 0.03, 4.0),
     ),
     heavy_tailed=False,
     rooms_law=(7.05, 2.07),
@@ -151,22 +153,28 @@ def make_building(family: str, seed: int) -> Building:
 def simulate_scene(
     family: str,
     seed: int,
-    grade: Grade | NoiseModel = "hard",
+    grade: Grade | NoiseModel = "measured",
     *,
-    stills: bool = False,
+    as_stills: bool = False,
     metres_per_su: float | None = None,
 ) -> SimulatedScene:
-    """A scene of a family: the building of a seed, recorded on a walk through all its rooms.
+    """A scene of a family: the building of a seed, filmed on a walk through all its rooms.
 
     Args:
         family: one of `FAMILIES`.
         seed: ≥ 0; building and walk do not depend on the grade.
         grade: name of a grade, or a noise model.
-        stills: sparse photos instead of a walk.
+        as_stills: sparse photos instead of a walk.
         metres_per_su: metres a trajectory unit; log-uniform over 0.1-10 where None.
 
     Raises:
         InputError: no such family or grade, or a negative seed.
     """
     building = make_building(family, seed)
-    return simulate(building, seed, grade, as_stills=stills, metres_per_su=metres_per_su)
+    way_rng, unit_rng, noise_rng, drift_rng = (
+        np.random.default_rng(s)
+        for s in np.random.SeedSequence([FAMILIES.index(family), seed, 1]).spawn(4)
+    )
+    unit = float(10 ** unit_rng.uniform(-1, 1)) if metres_per_su is None else metres_per_su
+    way = stills(building, way_rng) if as_stills else film(building, way_rng)
+    return recorded(building, way, noise_model(grade), unit, noise_rng, drift_rng)

@@ -10,7 +10,7 @@ import shapely
 from panoplan.errors import InputError
 from panoplan.geometry.polygons import counter_clockwise
 from panoplan.simulate.adjacency import shared_walls
-from panoplan.simulate.buildings import Building, InteriorRoom, outer_windows
+from panoplan.simulate.buildings import BlindDoor, Building, InteriorRoom, outer_windows
 from panoplan.simulate.features import (
     Draft,
     alcove_closet,
@@ -23,7 +23,7 @@ from panoplan.simulate.features import (
     habitable,
     pillar,
 )
-from panoplan.simulate.joining import SERVANT, Joinery, join
+from panoplan.simulate.joining import SERVANT, SHARED, WAYS, Joinery, join
 from panoplan.simulate.partition import clip, cut
 from panoplan.simulate.walks import can_be_walked
 from panoplan.simulate.wings import Shape, Wing, make_wings
@@ -496,7 +496,38 @@ def _joined(name: str, style: Style, drafts: list[Draft], rng: np.random.Generat
     )
     passages = join(rooms, style.doors, rng)
     walls = shared_walls([r.polygon for r in rooms], 0.26)
-    return Building(name, rooms, passages, outer_windows(rooms, walls, rng))
+    front = _front_door(drafts, rooms, style.doors, rng)
+    windows = outer_windows(rooms, walls, rng)
+    if front is None:
+        return Building(name, rooms, passages, windows)
+    door = shapely.LineString(front.segment).buffer(0.2)
+    clear = tuple(w for w in windows if not door.intersects(shapely.LineString(w.segment)))
+    return Building(name, rooms, passages, clear, (front,))
+
+
+def _front_door(
+    drafts: list[Draft], rooms: tuple[InteriorRoom, ...], doors: Joinery, rng: np.random.Generator
+) -> BlindDoor | None:
+    """A door to the street in an outer wall of a way or a shared room, if one has such."""
+    house = shapely.union_all([room.floor for room in rooms])
+    for k in sorted(range(len(rooms)), key=lambda k: (rooms[k].label not in WAYS, k)):
+        if rooms[k].label not in WAYS | SHARED:
+            continue
+        lengths = drafts[k].lengths
+        outer = [
+            edge
+            for edge in range(len(lengths))
+            if lengths[edge] > 1.15 and faces_outside(drafts[k], edge, 1.0, house)
+        ]
+        if outer:
+            edge = int(rng.choice(outer))
+            a, b = rooms[k].polygon[edge], np.roll(rooms[k].polygon, -1, axis=0)[edge]
+            along = (b - a) / lengths[edge]
+            width = float(rng.uniform(doors.door_m[0] + 0.1, 1.0))
+            start = _start(float(lengths[edge]), width, 0.05, rng)
+            segment = a + np.array([[start], [start + width]]) * along
+            return BlindDoor("door", k, segment)
+    return None
 
 
 def _ceiling(label: str, area: float, usual: float, rng: np.random.Generator) -> float:

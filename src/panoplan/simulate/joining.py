@@ -15,6 +15,8 @@ SHARED = frozenset({"living", "dining", "kitchen", "family"})
 SERVANT = frozenset({"closet", "bathroom"})
 _JAMB_MARGIN_M = 0.1
 _THICKEST_M = 0.26
+_NARROW_OPENING = 0.4
+"""An opening is at least this share of what the wall allows."""
 
 
 @dataclass(frozen=True)
@@ -103,7 +105,8 @@ def _passage(
     width = float(rng.uniform(*how.door_m))
     kind: PassageKind = "door"
     if wants_opening and room >= 1.2:
-        kind, width = "opening", float(rng.uniform(1.2, min(how.widest_opening_m, room)))
+        most = min(how.widest_opening_m, room)
+        kind, width = "opening", float(rng.uniform(max(1.2, _NARROW_OPENING * most), most))
     elif wants_double and room >= 2 * width:
         width = min(2 * width, 1.8)
     if width > room:

@@ -6,12 +6,18 @@ predictions, compared with human annotation.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Container, Iterable, Mapping
+from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
 
+from panoplan.simulate.odometry import (
+    MEASURED_ODOMETRY,
+    MEASURED_TOUR,
+    OdometryErrors,
+    TourErrors,
+)
 from panoplan.simulate.spans import EXACT_SPANS, MEASURED_SPANS, SpanErrors, noisy_spans
 from panoplan.simulate.views import View
 from panoplan.types.arrays import BoolArray, FloatArray, IntArray
@@ -65,8 +71,18 @@ class Measured:
         scale_mad_sigma: its MAD-sigma.
         corner_recall: (tolerance in columns of 1024, share of true corners found within it).
         corner_precision: (tolerance, share of the found corners that are true).
+        door_through: share of the doors that the boundary goes through.
+        door_stops: share that it stops at; it goes through a part of the others.
+        opening_through: the same of openings.
+        opening_stops: the same of openings.
         leak_median_m: median depth of a leak.
         leak_percentile_90_m: 90th percentile of that depth.
+        gross_wall: share of the columns on walls that are grossly wrong.
+        gross_door: the same on doors.
+        gross_opening: the same on openings.
+        gross_window: the same on windows.
+        bad_views: share of panoramas with more than a quarter of their columns grossly wrong.
+        good_views: share of those with less than a twentieth.
     """
 
     from_m: tuple[float, ...] = (0.0, 1.0, 1.5, 2.0, 3.0, 4.0)
@@ -80,8 +96,18 @@ class Measured:
     scale_mad_sigma: float = 0.015
     corner_recall: tuple[tuple[int, float], ...] = ((5, 0.58), (10, 0.66), (20, 0.71))
     corner_precision: tuple[tuple[int, float], ...] = ((5, 0.68), (10, 0.77), (20, 0.83))
+    door_through: float = 0.035
+    door_stops: float = 0.92
+    opening_through: float = 0.24
+    opening_stops: float = 0.62
     leak_median_m: float = 0.74
     leak_percentile_90_m: float = 3.3
+    gross_wall: float = 0.013
+    gross_door: float = 0.032
+    gross_opening: float = 0.31
+    gross_window: float = 0.025
+    bad_views: float = 6 / 69
+    good_views: float = 54 / 69
 
 
 MEASURED = Measured()
@@ -103,6 +129,11 @@ TARGET_GROSS_SHARE = (*MEASURED.gross_share, _BEYOND_6_M_GROSS)
 _MILD_CORES_DEG = (0.835, 0.526, 0.224, 0.437, 0.626, 0.786, 1.013)
 _HARD_CORES_DEG = (0.447, 0.275, 0.050, 0.171, 0.446, 0.472, 0.755)
 _HARD_TAILS = (1.56, 0.86, 1.53, 1.25, 0.54, 1.37, 0.97)
+# Where leaks through doors and openings are made apart, most gross errors are theirs and columns
+# on walls have lighter tails. These are the cores and tails with which whole views of open homes
+# have the measured MAD-sigma and 90th percentile in each bin, and at 4-6 m the gross share.
+_MEASURED_CORES_DEG = (0.58, 0.415, 0.27, 0.355, 0.55, 0.53, 0.66)
+_MEASURED_TAILS = (0.85, 0.55, 0.35, 0.40, 0.25, 0.90, 0.90)
 
 
 def _mild_bins() -> tuple[DistanceBin, ...]:
@@ -112,10 +143,35 @@ def _mild_bins() -> tuple[DistanceBin, ...]:
     )
 
 
+def _measured_bins() -> tuple[DistanceBin, ...]:
+    lows, biases = (*MEASURED.from_m, 6.0), (*MEASURED.bias_deg, MEASURED.bias_deg[-1])
+    columns = zip(lows, biases, _MEASURED_CORES_DEG, _MEASURED_TAILS, strict=True)
+    return tuple(DistanceBin(*column) for column in columns)
+
+
 def _hard_bins() -> tuple[DistanceBin, ...]:
     lows, biases = (*MEASURED.from_m, 6.0), (*MEASURED.bias_deg, MEASURED.bias_deg[-1])
     columns = zip(lows, biases, _HARD_CORES_DEG, _HARD_TAILS, strict=True)
     return tuple(DistanceBin(*column) for column in columns)
+
+
+@dataclass(frozen=True)
+class Correlation:
+    """How the error of one column goes with that of another: two exponentials of their distance.
+
+    Attributes:
+        near_columns: reach of the first, columns of 1024.
+        far_columns: reach of the second.
+        near_share: of the first in the variance.
+    """
+
+    near_columns: float
+    far_columns: float
+    near_share: float
+
+
+COLUMN_CORRELATION = Correlation(44.0, 400.0, 0.683)
+"""Of the errors' Gaussian core, as measured."""
 
 
 @dataclass(frozen=True)
@@ -125,6 +181,7 @@ class NoiseModel:
     Attributes:
         name: of the grade.
         bins: errors of the boundary by distance, nearest first; empty: none.
+        correlation: of the columns' own errors.
         scale_std: standard deviation of a panorama's common factor on its ranges.
         scale_outlier_share: share of panoramas whose factor is drawn from a wider Gaussian, so
             that it has heavy tails at the same standard deviation.
@@ -138,6 +195,9 @@ class NoiseModel:
         occluder_share: share of the views where furniture hides part of the boundary.
         door_leak: probability that the boundary goes through a door.
         opening_leak: probability that it goes through an opening.
+        door_part: probability that it goes through a part of a door.
+        opening_part: probability that it goes through a part of an opening.
+        doorway_leak: probability that it goes through what the camera stands in or right before.
         leak_median_m: median depth of the leaks, lognormal.
         leak_percentile_90_m: 90th percentile of that depth.
         corner_recall: share of true corners found, none missed where 1.
@@ -146,10 +206,13 @@ class NoiseModel:
         spans: how doors, openings and windows are told.
         drift_m: largest error of the odometry's position over the walk, metres.
         drift_deg: typical error of the odometry's heading at the end of the walk.
+        odometry: how a SLAM errs on a walk, instead of that drift; None for the drift.
+        tour: how an aligner of still photos errs, instead of that drift; None for the drift.
     """
 
     name: str
     bins: tuple[DistanceBin, ...] = ()
+    correlation: Correlation = COLUMN_CORRELATION
     scale_std: float = 0.0
     scale_outlier_share: float = 0.0
     scale_core_std: float = 0.0
@@ -159,6 +222,9 @@ class NoiseModel:
     occluder_share: float = 0.0
     door_leak: float = 0.0
     opening_leak: float = 0.0
+    door_part: float = 0.0
+    opening_part: float = 0.0
+    doorway_leak: float = 0.0
     leak_median_m: float = MEASURED.leak_median_m
     leak_percentile_90_m: float = MEASURED.leak_percentile_90_m
     corner_recall: float = 1.0
@@ -167,6 +233,21 @@ class NoiseModel:
     spans: SpanErrors = EXACT_SPANS
     drift_m: float = 0.0
     drift_deg: float = 0.0
+    odometry: OdometryErrors | None = None
+    tour: TourErrors | None = None
+
+
+@dataclass(frozen=True)
+class Leak:
+    """A boundary that goes through a door or an opening.
+
+    Attributes:
+        depth_m: how far, square to the wall.
+        partly: whether it does so in a part of the columns only.
+    """
+
+    depth_m: float
+    partly: bool = False
 
 
 def _corner_spread() -> tuple[tuple[int, float], ...]:
@@ -204,12 +285,39 @@ HARD = NoiseModel(
     drift_m=0.4,
     drift_deg=1.0,
 )
-GRADES = {model.name: model for model in (EXACT, MILD, HARD)}
+REAL = NoiseModel(
+    "measured",
+    bins=_measured_bins(),
+    scale_std=MEASURED.scale_std,
+    correlation=Correlation(110.0, 400.0, 0.6),
+    scale_outlier_share=0.15,
+    scale_core_std=0.006,
+    door_leak=MEASURED.door_through,
+    # A leak of less than 0.3 m counts as none where leaks are measured.
+    opening_leak=0.28,
+    door_part=1 - MEASURED.door_through - MEASURED.door_stops,
+    opening_part=1 - MEASURED.opening_through - MEASURED.opening_stops,
+    # Square to the wall; along the rays, as measured, they are longer.
+    leak_median_m=0.5,
+    leak_percentile_90_m=2.4,
+    doorway_leak=0.5,
+    corner_recall=MEASURED.corner_recall[-1][1],
+    corner_precision=MEASURED.corner_precision[-1][1],
+    corner_spread=_corner_spread(),
+    spans=MEASURED_SPANS,
+    odometry=MEASURED_ODOMETRY,
+    tour=MEASURED_TOUR,
+)
+GRADES = {model.name: model for model in (EXACT, MILD, HARD, REAL)}
 
 
 def draw_leaks(
-    doors: Iterable[int], openings: Iterable[int], model: NoiseModel, rng: np.random.Generator
-) -> dict[int, float]:
+    doors: Iterable[int],
+    openings: Iterable[int],
+    model: NoiseModel,
+    rng: np.random.Generator,
+    near: Container[int] = (),
+) -> dict[int, Leak]:
     """Which passages of a room a view goes through, and how deep.
 
     Args:
@@ -217,18 +325,57 @@ def draw_leaks(
         openings: indices of its openings.
         model: the grade.
         rng: of the draw.
+        near: those that the camera stands in or right before.
 
     Returns:
-        Depth in metres square to the wall, by index of the passage.
+        The leaks, by index of the passage.
     """
     spread = np.log(model.leak_percentile_90_m / model.leak_median_m) / _PERCENTILE_90_Z
     leaks = {}
-    for indices, share in ((doors, model.door_leak), (openings, model.opening_leak)):
+    for indices, share, part in (
+        (doors, model.door_leak, model.door_part),
+        (openings, model.opening_leak, model.opening_part),
+    ):
         for k in indices:
             chance, depth = rng.random(), rng.standard_normal()
-            if chance < share:
-                leaks[k] = float(model.leak_median_m * np.exp(spread * depth))
+            whole = max(share, model.doorway_leak) if k in near else share
+            if chance < whole + part:
+                depth_m = float(model.leak_median_m * np.exp(spread * depth))
+                leaks[k] = Leak(depth_m, chance >= whole)
     return leaks
+
+
+def partly_closed(view: View, leaks: Mapping[int, Leak], rng: np.random.Generator) -> View:
+    """The view with leaks that are partial closed in the rest of their columns.
+
+    Args:
+        view: with all leaks.
+        leaks: by index of the passage.
+        rng: of the part.
+
+    Returns:
+        The view; a part of one fifth to four fifths at one end stays open.
+    """
+    closed = np.zeros(len(view.range_m), dtype=np.bool_)
+    for k in (k for k, leak in leaks.items() if leak.partly):
+        columns = np.flatnonzero(view.leaked & (view.passage == k))
+        # Columns in the order of the image, over its edge where need be.
+        gap = (
+            int(np.argmax(np.diff(columns, append=columns[:1] + len(closed))))
+            if len(columns)
+            else 0
+        )
+        columns = np.roll(columns, -gap - 1)
+        stays, at_start = int(rng.uniform(0.2, 0.8) * len(columns)), rng.random() < 0.5
+        closed[columns[stays:] if at_start else columns[: len(columns) - stays]] = True
+    if not closed.any():
+        return view
+    return replace(
+        view,
+        range_m=np.where(closed, view.closed_range_m, view.range_m),
+        surface=np.where(closed, view.closed_surface, view.surface),
+        leaked=view.leaked & ~closed,
+    )
 
 
 def scale_factor(model: NoiseModel, rng: np.random.Generator) -> float:
@@ -259,55 +406,60 @@ def noisy_layout(view: View, model: NoiseModel, rng: np.random.Generator) -> Lay
         ranges, edges = _occluded(ranges, rng)
         corners = np.append(corners, edges)
     factor = scale_factor(model, rng) * (1 + model.height_jitter * rng.standard_normal())
-    field, calm = _column_fields(width, rng)
+    field, calm = _column_fields(width, model.correlation, rng)
     bias, core, tail = _errors_at(model, view.range_m)
     own = core * field * np.exp(tail * calm**2 / 2)
     error = bias + _LARGEST_ERROR_RAD * np.tanh(own / _LARGEST_ERROR_RAD)
     elevation = -np.arctan2(view.camera_height_m, ranges * factor) + error
     elevation = np.clip(elevation, _STEEPEST_RAD, _SHALLOWEST_RAD)
     elevation = _with_gross(elevation, view, model, rng)
-    apart = column_field(width, rng)
+    apart = column_field(width, rng, model.correlation)
     shared = _CEILING_CORRELATION
     ceiling = view.ceiling_boundary - core * (shared * field + np.sqrt(1 - shared**2) * apart)
     found = noisy_corners(corners, width, model, rng)
     return Layout(elevation, ceiling, found, spans=noisy_spans(view, model.spans, rng))
 
 
-def column_field(width: int, rng: np.random.Generator) -> FloatArray:
-    """Gaussian noise around the panorama with the measured correlation along the columns.
+def column_field(
+    width: int, rng: np.random.Generator, correlated: Correlation = COLUMN_CORRELATION
+) -> FloatArray:
+    """Gaussian noise around the panorama, correlated along the columns.
 
     Args:
         width: number of columns W, which go once around.
         rng: of the noise.
+        correlated: how.
 
     Returns:
         (W,) of unit variance.
     """
-    return _column_fields(width, rng)[0]
+    return _column_fields(width, correlated, rng)[0]
 
 
-def _column_fields(width: int, rng: np.random.Generator) -> tuple[FloatArray, FloatArray]:
+def _column_fields(
+    width: int, correlated: Correlation, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
     """A field as `column_field` gives it and a smoothed one of unit variance that follows it."""
     white = np.fft.rfft(rng.standard_normal(width))
-    rough, smooth = _amplitudes(width)
+    rough, smooth = _amplitudes(width, correlated)
     return (
         np.asarray(np.fft.irfft(white * rough, n=width)),
         np.asarray(np.fft.irfft(white * smooth, n=width)),
     )
 
 
-def correlation(lag: FloatArray) -> FloatArray:
-    """Correlation of the column noise at lags in columns of 1024, fitted to the measured one."""
-    near, far, share = 44.0, 400.0, 0.683
-    return np.asarray(share * np.exp(-lag / near) + (1 - share) * np.exp(-lag / far))
+def correlation(lag: FloatArray, of: Correlation = COLUMN_CORRELATION) -> FloatArray:
+    """Correlation of the column noise at lags in columns of 1024."""
+    near = np.exp(-lag / of.near_columns)
+    return np.asarray(of.near_share * near + (1 - of.near_share) * np.exp(-lag / of.far_columns))
 
 
 @lru_cache(maxsize=8)
-def _amplitudes(width: int) -> tuple[FloatArray, FloatArray]:
+def _amplitudes(width: int, correlated: Correlation) -> tuple[FloatArray, FloatArray]:
     """Gains that give white noise the columns' correlation, and the same with smoothing."""
     column = np.arange(width)
     lag = np.minimum(column, width - column) * (_REFERENCE_WIDTH / width)
-    spectrum = np.maximum(np.fft.rfft(correlation(lag)).real, 0.0)
+    spectrum = np.maximum(np.fft.rfft(correlation(lag, correlated)).real, 0.0)
     blur = np.exp(-(np.minimum(lag / _TAIL_SMOOTHING_COLUMNS, 30.0) ** 2) / 2)
     passed = np.fft.rfft(blur / blur.sum()).real
     smoothed = spectrum * passed**2

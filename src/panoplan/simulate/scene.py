@@ -6,21 +6,23 @@ from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
+import shapely
 
 from panoplan.errors import InputError
 from panoplan.geometry.rigid import heading_of
-from panoplan.simulate.buildings import Building, make_flat
-from panoplan.simulate.noise import GRADES, NoiseModel, draw_leaks, noisy_layout
-from panoplan.simulate.odometry import drifted, in_units
-from panoplan.simulate.views import ViewCaster, tilted
+from panoplan.simulate.buildings import Building, Passage, PassageKind, make_flat
+from panoplan.simulate.noise import GRADES, NoiseModel, draw_leaks, noisy_layout, partly_closed
+from panoplan.simulate.odometry import drifted, in_units, toured, wandered
+from panoplan.simulate.views import View, ViewCaster, tilted
 from panoplan.simulate.walks import Walk, about_y, stills, walk
-from panoplan.types.arrays import FloatArray
+from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.layout import Layout
 from panoplan.types.pose import Pose, Trajectory
 from panoplan.types.truth import GroundTruth, TruePlan, TrueRoom
 
-Grade = Literal["exact", "mild", "hard"]
+Grade = Literal["exact", "mild", "hard", "measured"]
+_DOORWAY_M = 0.25
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +39,8 @@ class SimulatedScene:
         noise: the grade it was made with.
         building: what was walked through.
         keyframe_rooms: index of the room each keyframe's view is of.
+        frames: the true pose of every frame of the video, labelled with its number from 1; None
+            where there is no video.
     """
 
     name: str
@@ -47,6 +51,7 @@ class SimulatedScene:
     noise: NoiseModel
     building: Building
     keyframe_rooms: tuple[int, ...]
+    frames: Trajectory | None = None
 
     @property
     def ch_per_su(self) -> float:
@@ -81,7 +86,7 @@ def simulate_flat(
     Args:
         seed: the same seed gives the same flat, the same way through it and the same noise; the
             flat and the way do not depend on the grade.
-        grade: "exact", "mild", "hard" or a noise model.
+        grade: "exact", "mild", "hard", "measured" or a noise model.
         stills: sparse photos instead of a walk.
         rooms: how many, 5-9; drawn where None.
         skewed: whether some walls are not at right angles; drawn where None.
@@ -123,7 +128,7 @@ def simulate(
     Args:
         building: connected.
         seed: of the way, the noise and the unit.
-        grade: "exact", "mild", "hard" or a noise model.
+        grade: "exact", "mild", "hard", "measured" or a noise model.
         as_stills: sparse photos instead of a walk.
         step_m: mean way between keyframes, metres.
         keyframes_per_room: at least about so many a room; by the room's size where None.
@@ -138,7 +143,7 @@ def simulate(
         InputError: an unknown grade, a unit that is not positive, or a building that cannot be
             walked.
     """
-    model = _model(grade)
+    model = noise_model(grade)
     way_rng, unit_rng, noise_rng, drift_rng = (
         np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4)
     )
@@ -182,24 +187,36 @@ def recorded(
     Returns:
         The scene.
     """
-    odometry = drifted(way.trajectory, model.drift_m, model.drift_deg, drift_rng)
+    kind = "walk" if len(way.path) != len(way.trajectory) else "stills"
+    kept = np.arange(len(way.trajectory))
+    if kind == "walk" and model.odometry is not None:
+        odometry, there = wandered(way.trajectory, model.odometry, drift_rng)
+        kept = np.flatnonzero(there)
+    elif kind == "stills" and model.tour is not None:
+        odometry = toured(way.trajectory, way.rooms, model.tour, drift_rng)
+    else:
+        odometry = drifted(way.trajectory, model.drift_m, model.drift_deg, drift_rng)
     odometry = in_units(odometry, metres_per_su)
     caster = ViewCaster(building)
     rngs = noise_rng.spawn(len(way.trajectory))
     keyframes = tuple(
-        Keyframe(label, odometry[k], _layout(caster, way, k, model, rngs[k], width))
-        for k, label in enumerate(way.trajectory.labels)
+        Keyframe(
+            way.trajectory.labels[k],
+            odometry[k],
+            noisy_view(caster, way, k, model, rngs[k], width)[1],
+        )
+        for k in kept.tolist()
     )
-    kind = "walk" if len(way.path) != len(way.trajectory) else "stills"
     return SimulatedScene(
         name=f"{building.name}_{kind}_{model.name}",
         keyframes=keyframes,
-        truth=GroundTruth(true_plan(building, way.camera_height_m), way.trajectory),
+        truth=GroundTruth(true_plan(building, way.camera_height_m), _some(way.trajectory, kept)),
         camera_height_m=way.camera_height_m,
         metres_per_su=metres_per_su,
         noise=model,
         building=building,
-        keyframe_rooms=tuple(int(k) for k in way.rooms),
+        keyframe_rooms=tuple(int(k) for k in way.rooms[kept]),
+        frames=way.frames,
     )
 
 
@@ -207,7 +224,7 @@ def true_plan(building: Building, camera_height_m: float | None = None) -> TrueP
     """The true plan of a building.
 
     Rooms end at openings, as the layouts see them: `rooms` and `rooms_partial` are the same.
-    Doors and openings are listed with both faces of their wall.
+    Doors and openings are listed with both faces of their wall, blind ones with their one face.
 
     Args:
         building: in the plan frame.
@@ -227,15 +244,28 @@ def true_plan(building: Building, camera_height_m: float | None = None) -> TrueP
     return TruePlan(
         rooms=rooms,
         rooms_partial=rooms,
-        doors=tuple(face for p in building.doors for face in p.faces),
-        openings=tuple(face for p in building.openings for face in p.faces),
+        doors=_faces(building, "door"),
+        openings=_faces(building, "opening"),
         windows=tuple(w.segment for w in building.windows),
         axis=longest / np.hypot(*longest),
         camera_height_m=camera_height_m,
     )
 
 
-def _model(grade: Grade | NoiseModel) -> NoiseModel:
+def _faces(building: Building, kind: PassageKind) -> tuple[FloatArray, ...]:
+    """Both faces of passages and the one of blind doors."""
+    return (
+        *(face for p in building.passages if p.kind == kind for face in p.faces),
+        *(d.segment for d in building.blind_doors if d.kind == kind),
+    )
+
+
+def noise_model(grade: Grade | NoiseModel) -> NoiseModel:
+    """The noise model that a grade means.
+
+    Raises:
+        InputError: an unknown grade.
+    """
     if isinstance(grade, NoiseModel):
         return grade
     if grade not in GRADES:
@@ -243,38 +273,68 @@ def _model(grade: Grade | NoiseModel) -> NoiseModel:
     return GRADES[grade]
 
 
-def _layout(
+def noisy_view(
     caster: ViewCaster,
     way: Walk,
     index: int,
     model: NoiseModel,
     rng: np.random.Generator,
-    width: int,
-) -> Layout:
-    """The layout of one keyframe."""
+    width: int = 1024,
+) -> tuple[View, Layout]:
+    """What one camera of a walk truly sees, and its layout.
+
+    Args:
+        caster: of the building.
+        way: true poses.
+        index: of the camera.
+        model: the grade.
+        rng: of the errors.
+        width: number of columns.
+
+    Returns:
+        The exact view of a level camera at its place, leaks included, and the layout with its
+        errors and the camera's tilt.
+    """
     building, room = caster.building, int(way.rooms[index])
     pose = way.trajectory[index]
+    position, heading = pose.translation[[0, 2]], heading_of(pose.rotation)
     behind = [k for k, _ in building.neighbours(room)]
+    near = [k for k in behind if _before(building.passages[k], position)]
     leaks = draw_leaks(
         [k for k in behind if building.passages[k].kind == "door"],
         [k for k in behind if building.passages[k].kind == "opening"],
         model,
         rng,
+        near,
     )
-    heading = heading_of(pose.rotation)
     view = caster.view(
-        pose.translation[[0, 2]],
+        position,
         heading,
         way.camera_height_m - float(pose.translation[1]),
         width=width,
-        leaks=leaks,
+        leaks={k: leak.depth_m for k, leak in leaks.items()},
         room=room,
     )
+    view = partly_closed(view, leaks, rng)
     layout = noisy_layout(view, model, rng)
     level_from_cam = _level_from_cam(pose, heading)
     if np.abs(level_from_cam - np.eye(3)).max() < 1e-12:
-        return layout
-    return tilted(layout, level_from_cam)
+        return view, layout
+    return view, tilted(layout, level_from_cam)
+
+
+def _before(passage: Passage, position: FloatArray) -> bool:
+    """Whether a camera stands in a passage or closer to it than `_DOORWAY_M`."""
+    away = shapely.distance(shapely.Polygon(passage.area), shapely.Point(position))
+    return bool(away < _DOORWAY_M)
+
+
+def _some(trajectory: Trajectory, kept: IntArray) -> Trajectory:
+    return Trajectory(
+        tuple(trajectory.labels[k] for k in kept),
+        trajectory.rotations[kept],
+        trajectory.translations[kept],
+    )
 
 
 def _level_from_cam(pose: Pose, heading: float) -> FloatArray:

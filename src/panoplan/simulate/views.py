@@ -328,6 +328,7 @@ def _room_faces(building: Building, room: int) -> _Faces:
         if room in p.rooms
     ]
     marks += [(w.segment, Surface.WINDOW, -1) for w in building.windows if w.room == room]
+    marks += [(d.segment, _surface(d.kind), -1) for d in building.blind_doors if d.room == room]
     a: list[FloatArray] = []
     b: list[FloatArray] = []
     surfaces: list[int] = []

@@ -18,8 +18,9 @@ from panoplan.types.pose import Trajectory
 _CLEARANCES_M = (0.35, 0.3, 0.25, 0.2, 0.15, 0.1)
 _WAYPOINT_CLEARANCES_M = (0.5, 0.4, 0.3, 0.2, 0.1)
 _TURN_M = 0.3
-_DENSE_M = 0.02
 _HEADING_SMOOTHING_M = 0.35
+PATH_SPACING_M = 0.02
+"""Between the points of a path."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,12 +34,15 @@ class Walk:
         rooms: (N,) index of the room each keyframe stands in or, in a doorway, looks into.
         camera_height_m: nominal height above the floor; a keyframe's is this less its y.
         path: (P, 2) plan, the way walked, densely; the camera's positions for stills.
+        frames: world_from_cam of every frame of the video, labelled with its number from 1, or
+            None where there is none.
     """
 
     trajectory: Trajectory
     rooms: IntArray
     camera_height_m: float
     path: FloatArray
+    frames: Trajectory | None = None
 
 
 def walk(
@@ -73,19 +77,39 @@ def walk(
     Raises:
         InputError: a room cannot be reached or is too narrow to walk in.
     """
-    height = _camera_height(rng, camera_height_m)
+    height = camera_height(rng, camera_height_m)
     first = int(rng.integers(len(building.rooms))) if start is None else start
-    corners = np.array(_route(building, rng, first, step_m, keyframes_per_room))
-    path = _resampled(_rounded(corners), _DENSE_M)
+    path = path_through(building, rng, first, step_m * (keyframes_per_room or 0))
     arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
     at = _strides(rng, float(arc[-1]), step_m)
-    headings = _headings(path)
-    wobble = np.deg2rad(8.0) * _smooth_noise(rng, len(at), 12.0)
+    headings = headings_along(path)
+    wobble = np.deg2rad(8.0) * smooth_noise(rng, len(at), 12.0)
     beta = np.interp(at, arc, headings) + wobble
     positions = np.stack([np.interp(at, arc, path[:, k]) for k in range(2)], axis=1)
-    bob = 0.015 * _smooth_noise(rng, len(at), 1.0)
-    tilt = np.deg2rad(tilt_deg) * np.stack([_smooth_noise(rng, len(at), 3.0) for _ in range(2)], 1)
+    bob = 0.015 * smooth_noise(rng, len(at), 1.0)
+    tilt = np.deg2rad(tilt_deg) * np.stack([smooth_noise(rng, len(at), 3.0) for _ in range(2)], 1)
     return _walk(building, positions, bob, beta, tilt, height, path)
+
+
+def path_through(
+    building: Building, rng: np.random.Generator, start: int, least_m: float = 0.0
+) -> FloatArray:
+    """The way of a person through all rooms, depth first, with rounded turns.
+
+    Args:
+        building: connected.
+        rng: of all choices.
+        start: index of the first room.
+        least_m: shortest way in each room, metres.
+
+    Returns:
+        (P, 2) plan, points `PATH_SPACING_M` apart.
+
+    Raises:
+        InputError: a room cannot be reached or is too narrow to walk in.
+    """
+    corners = np.array(_route(building, rng, start, least_m))
+    return _resampled(_rounded(corners), PATH_SPACING_M)
 
 
 def stills(
@@ -111,7 +135,7 @@ def stills(
     Raises:
         InputError: a room cannot be reached or is too narrow to stand in.
     """
-    height = _camera_height(rng, camera_height_m)
+    height = camera_height(rng, camera_height_m)
     first = int(rng.integers(len(building.rooms))) if start is None else start
     order = _visits(building, rng, first)
     places = []
@@ -247,19 +271,17 @@ def _route(
     building: Building,
     rng: np.random.Generator,
     start: int,
-    step_m: float,
-    keyframes_per_room: int | None,
+    least_m: float,
 ) -> list[FloatArray]:
     """Corners of the way through all rooms."""
     footings = [_Footing(building, k) for k in range(len(building.rooms))]
     order = _visits(building, rng, start)
-    least = step_m * (keyframes_per_room or 0)
     route = [_waypoints(footings[start], rng, 1)[0]]
     seen: set[int] = set()
     for k, room in enumerate(order):
         if room not in seen:
             seen.add(room)
-            _tour(footings[room], rng, route, least)
+            _tour(footings[room], rng, route, least_m)
         if k + 1 < len(order):
             _cross(building, footings, route, room, order[k + 1])
     return route
@@ -340,25 +362,32 @@ def _strides(rng: np.random.Generator, length: float, step_m: float) -> FloatArr
     return np.asarray(at[at <= length])
 
 
-def _headings(path: FloatArray) -> FloatArray:
+def headings_along(path: FloatArray) -> FloatArray:
     """Unwrapped heading of the motion at each path point, smoothed along the way."""
     if len(path) < 3:
         return np.zeros(len(path))
     moved = np.diff(path, axis=0)
     raw = np.unwrap(np.arctan2(moved[:, 0], moved[:, 1]))
     raw = np.append(raw, raw[-1])
-    return np.asarray(gaussian_filter1d(raw, _HEADING_SMOOTHING_M / _DENSE_M, mode="nearest"))
+    return np.asarray(gaussian_filter1d(raw, _HEADING_SMOOTHING_M / PATH_SPACING_M, mode="nearest"))
 
 
-def _smooth_noise(rng: np.random.Generator, count: int, smoothing: float) -> FloatArray:
-    """Gaussian noise of unit variance, correlated over about `smoothing` samples."""
+def smooth_noise(rng: np.random.Generator, count: int, smoothing: float) -> FloatArray:
+    """Gaussian noise of unit variance.
+
+    Args:
+        rng: of the noise.
+        count: of the samples.
+        smoothing: over about so many samples it is correlated.
+    """
     margin = int(4 * smoothing) + 1
     white = rng.standard_normal(count + 2 * margin)
     gain = np.sqrt(2 * np.sqrt(np.pi) * smoothing)
     return np.asarray(gaussian_filter1d(white, smoothing)[margin : margin + count] * gain)
 
 
-def _camera_height(rng: np.random.Generator, given: float | None) -> float:
+def camera_height(rng: np.random.Generator, given: float | None) -> float:
+    """Nominal height of the camera in metres: as given, else 1.4 to 1.7 m."""
     drawn = float(rng.uniform(1.4, 1.7))
     return drawn if given is None else given
 
@@ -374,7 +403,7 @@ def _walk(
 ) -> Walk:
     n = len(positions)
     translations = np.stack([positions[:, 0], bob, positions[:, 1]], axis=1)
-    rotations = about_y(beta) @ _about_x(tilt[:, 0]) @ _about_z(tilt[:, 1])
+    rotations = about_y(beta) @ about_x(tilt[:, 0]) @ about_z(tilt[:, 1])
     labels = tuple(f"{k:04d}" for k in range(n))
     trajectory = Trajectory(labels, rotations, translations)
     return Walk(trajectory, locate(building, positions, beta), height, path)
@@ -385,11 +414,13 @@ def about_y(angle: FloatArray) -> FloatArray:
     return _rotations(angle, 2, 0)
 
 
-def _about_x(angle: FloatArray) -> FloatArray:
+def about_x(angle: FloatArray) -> FloatArray:
+    """(N, 3, 3) rotations about the x axis by (N,) rad, turning y towards z."""
     return _rotations(angle, 1, 2)
 
 
-def _about_z(angle: FloatArray) -> FloatArray:
+def about_z(angle: FloatArray) -> FloatArray:
+    """(N, 3, 3) rotations about the z axis by (N,) rad, turning x towards y."""
     return _rotations(angle, 0, 1)
 
 
