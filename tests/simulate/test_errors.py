@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from panoplan.bench.difficulty import open_home_views
 from panoplan.geometry.rigid import heading_of
 from panoplan.simulate.errors import error_table
 from panoplan.simulate.families import family_of
@@ -15,26 +16,9 @@ from panoplan.simulate.views import ViewCaster
 from panoplan.simulate.walks import stills
 
 
-def views(model, seeds):
-    """Photos in homes as open as the two that were measured, and their layouts."""
-    flat = family_of("flat")
-    style = replace(flat.style, doors=replace(flat.style.doors, openings=1.0, rounds=1.0))
-    seen, told = [], []
-    for seed in seeds:
-        home = make_house("home", style, *flat.size(seed), np.random.default_rng([1, seed]))
-        tour = stills(home, np.random.default_rng(seed))
-        caster = ViewCaster(home)
-        for k in range(len(tour.trajectory)):
-            rng = np.random.default_rng([seed, k])
-            view, layout = noisy_view(caster, tour, k, model, rng)
-            seen.append(view)
-            told.append(layout)
-    return seen, told
-
-
 @pytest.fixture(scope="module")
 def table():
-    return error_table(*views(REAL, range(100, 160)))
+    return error_table(*open_home_views(REAL, range(100, 160)))
 
 
 def test_bias_of_each_distance(table):
@@ -83,7 +67,7 @@ def test_bad_and_good_views(table):
 
 
 def test_exact_layouts_have_no_errors():
-    table = error_table(*views(EXACT, range(2)))
+    table = error_table(*open_home_views(EXACT, range(2)))
     assert max(map(abs, table.bias_deg)) < 1e-9
     assert max(table.gross_share) == 0
     assert table.through == {"door": 0, "opening": 0}
@@ -92,7 +76,7 @@ def test_exact_layouts_have_no_errors():
 
 
 def test_the_table_finds_errors_put_in_by_hand():
-    seen, told = views(EXACT, range(3))
+    seen, told = open_home_views(EXACT, range(3))
     nearer = [replace(t, floor_boundary=t.floor_boundary - np.deg2rad(0.5)) for t in told]
     table = error_table(seen, nearer)
     np.testing.assert_allclose(table.bias_deg, -0.5, atol=1e-9)

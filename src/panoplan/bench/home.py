@@ -17,7 +17,7 @@ from panoplan.types.pose import Pose
 
 _UNIT_M = 3.7
 """Metres a trajectory unit where the unit is to be unknown: any number will do."""
-_TRUE_POSES = "trajectory_gt.tum"
+TRUE_POSES = "trajectory_gt.tum"
 
 
 def measure(folder: Path, config: Config) -> dict[str, Any]:
@@ -34,7 +34,7 @@ def measure(folder: Path, config: Config) -> dict[str, Any]:
     Raises:
         InputError: the folder is not complete.
     """
-    scene = open_scene(folder, trajectory=folder / _TRUE_POSES)
+    scene = open_scene(folder, trajectory=folder / TRUE_POSES)
     truth = read_truth(folder)
     result: dict[str, Any] = {"scene": folder.name}
     for name in ("metric", "recovered"):

@@ -7,6 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+from panoplan.bench import difficulty_tables
 from panoplan.bench.markdown import number, pair, table
 from panoplan.bench.v1 import tables as v1
 from panoplan.errors import InputError
@@ -26,8 +27,8 @@ def update(page: Path, folder: Path) -> bool:
     Args:
         page: Markdown with `<!-- measured: NAMES -->` and `<!-- end of measured -->`; the names,
             with commas, are of the tables that come between: buildings,
-            methods, shapes, scale, sweeps, causes, flats, metric, home, misplaced,
-            runtime.
+            methods, shapes, scale, sweeps, causes, difficulty, errors, flats, metric,
+            home, misplaced, runtime.
         folder: of the benchmark files.
 
     Returns:
@@ -72,6 +73,8 @@ def updated(text: str, folder: Path, page: Path) -> str:
         "scale": v1.scale,
         "sweeps": v1.sweeps,
         "causes": v1.causes,
+        "difficulty": difficulty_tables.figures,
+        "errors": difficulty_tables.errors,
         "flats": _flats,
         "home": _home,
         "metric": _metric,

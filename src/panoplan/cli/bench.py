@@ -20,26 +20,33 @@ def add_parser(commands: Any) -> None:
         help="accuracy and runtime, and tables of them",
         description="v1: the paper's tables on simulated buildings. accuracy: on simulated flats. "
         "metric: whether the ± of metres holds. home: on a scene with known truth. misplaced: one "
-        "room's cameras of a tour shifted, on simulated flats or on a scene. runtime: time and "
-        "memory on a long walk. odometry: on rendered walks. table: writes what they measured "
-        "into a page.",
+        "room's cameras of a tour shifted, on simulated flats or on a scene. difficulty: a scene's "
+        "real layouts against simulated ones. runtime: time and memory on a long walk. odometry: on "
+        "rendered walks. table: writes what they measured into a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
     parser.add_argument(
         "what",
-        choices=["v1", "accuracy", "metric", "home", "misplaced", "runtime", "odometry", "table"],
-    )
+        choices=[
+            "v1", "accuracy", "metric", "home", "misplaced", "difficulty", "runtime", "odometry",
+            "table",
+        ],
+    )  # fmt: skip
     parser.add_argument(
         "input",
         nargs="?",
         type=Path,
-        help="home, misplaced: the scene; odometry: walks; table: the page",
+        help="home, misplaced, difficulty: the scene; odometry: walks; table: the page",
     )
     parser.add_argument("--flats", type=int, default=20, metavar="N", help="seeds 0 to N-1 a grade")
     parser.add_argument("--trials", type=int, default=40, metavar="N", help="misplaced: how many")
     parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
     parser.add_argument(
-        "--jobs", type=_jobs, default=1, metavar="N", help="v1, accuracy, metric: processes"
+        "--jobs",
+        type=_jobs,
+        default=1,
+        metavar="N",
+        help="v1, accuracy, metric, difficulty: processes",
     )
     parser.add_argument(
         "--results",
@@ -58,11 +65,20 @@ def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     if options.what == "v1":
         return bench_v1.act(options)
-    from panoplan.bench import accuracy, home, metric, misplaced, odometry, runtime, table
+    from panoplan.bench import (
+        accuracy,
+        difficulty,
+        home,
+        metric,
+        misplaced,
+        odometry,
+        runtime,
+        table,
+    )
     from panoplan.bench.record import record
     from panoplan.config import as_dict
 
-    if options.what in ("home", "odometry", "table") and options.input is None:
+    if options.what in ("home", "difficulty", "odometry", "table") and options.input is None:
         raise InputError(f"bench {options.what}", "no path", f"bench {options.what} PATH")
     if options.what == "table":
         changed = table.update(options.input, options.results)
@@ -88,6 +104,8 @@ def act(options: argparse.Namespace) -> int:
                 figures = misplaced.measure_home(options.input, config, trials, report)
         elif options.what == "odometry":
             figures = odometry.measure(_walks(options.input), report)
+        elif options.what == "difficulty":
+            figures = difficulty.measure(options.input, config, report, jobs=options.jobs)
         else:
             figures = runtime.measure(config, report)
     text = json.dumps(record(options.what, as_dict(config), figures), indent=1) + "\n"

@@ -11,6 +11,8 @@ from dataclasses import dataclass, replace
 from functools import lru_cache
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
+from scipy.special import ndtri
 
 from panoplan.simulate.odometry import (
     MEASURED_ODOMETRY,
@@ -175,6 +177,40 @@ COLUMN_CORRELATION = Correlation(44.0, 400.0, 0.683)
 
 
 @dataclass(frozen=True)
+class StatedSigma:
+    """How a network states the standard deviation of its own floor boundary.
+
+    It knows of most of its large errors, not of all: the stated value is the usual one at a
+    distance and, in the columns where the network is aware of it, the error that it makes there.
+
+    Attributes:
+        from_m: lower ends of the distance bins.
+        usual_deg: what it states in each where it errs little.
+        spread: standard deviation of the logarithm of that along the columns, and once more from
+            view to view.
+        aware: share of the columns where it is aware of its error.
+        columns: over so many columns of 1024 what it states changes.
+    """
+
+    from_m: tuple[float, ...]
+    usual_deg: tuple[float, ...]
+    spread: float
+    aware: float
+    columns: float
+
+
+MEASURED_SIGMA = StatedSigma(
+    from_m=MEASURED.from_m,
+    usual_deg=(0.93, 0.65, 0.48, 0.57, 0.85, 1.0),
+    spread=0.12,
+    aware=0.7,
+    columns=50.0,
+)
+"""Of the network's own sigma on 23 real panoramas of one home, taken a quarter of a metre and more
+from any wall."""
+
+
+@dataclass(frozen=True)
 class NoiseModel:
     """How layouts and poses differ from the truth.
 
@@ -200,6 +236,7 @@ class NoiseModel:
         doorway_leak: probability that it goes through what the camera stands in or right before.
         leak_median_m: median depth of the leaks, lognormal.
         leak_percentile_90_m: 90th percentile of that depth.
+        stated: how the network states its own uncertainty; None where it states none.
         corner_recall: share of true corners found, none missed where 1.
         corner_precision: share of the corners told that are true.
         corner_spread: (largest error in columns of 1024, share of found corners within it).
@@ -227,6 +264,7 @@ class NoiseModel:
     doorway_leak: float = 0.0
     leak_median_m: float = MEASURED.leak_median_m
     leak_percentile_90_m: float = MEASURED.leak_percentile_90_m
+    stated: StatedSigma | None = None
     corner_recall: float = 1.0
     corner_precision: float = 1.0
     corner_spread: tuple[tuple[int, float], ...] = ()
@@ -300,6 +338,7 @@ REAL = NoiseModel(
     # Square to the wall; along the rays, as measured, they are longer.
     leak_median_m=0.5,
     leak_percentile_90_m=2.4,
+    stated=MEASURED_SIGMA,
     doorway_leak=0.5,
     corner_recall=MEASURED.corner_recall[-1][1],
     corner_precision=MEASURED.corner_precision[-1][1],
@@ -417,7 +456,39 @@ def noisy_layout(view: View, model: NoiseModel, rng: np.random.Generator) -> Lay
     shared = _CEILING_CORRELATION
     ceiling = view.ceiling_boundary - core * (shared * field + np.sqrt(1 - shared**2) * apart)
     found = noisy_corners(corners, width, model, rng)
-    return Layout(elevation, ceiling, found, spans=noisy_spans(view, model.spans, rng))
+    spans = noisy_spans(view, model.spans, rng)
+    sigma = None if model.stated is None else stated_sigma(view, elevation, model.stated, rng)
+    return Layout(elevation, ceiling, found, sigma, spans)
+
+
+def stated_sigma(
+    view: View, elevation: FloatArray, stated: StatedSigma, rng: np.random.Generator
+) -> FloatArray:
+    """What a network states as the standard deviation of a floor boundary.
+
+    Args:
+        view: the truth.
+        elevation: (W,) rad, as told.
+        stated: how it states.
+        rng: of what it is aware of.
+
+    Returns:
+        (W,) rad.
+    """
+    width = len(elevation)
+    smoothing = stated.columns * width / _REFERENCE_WIDTH
+
+    def field() -> FloatArray:
+        white = gaussian_filter1d(rng.standard_normal(width), smoothing, mode="wrap")
+        return np.asarray(white * np.sqrt(2 * np.sqrt(np.pi) * smoothing))
+
+    usual = np.interp(view.closed_range_m, stated.from_m, stated.usual_deg)
+    usual = np.deg2rad(usual) * np.exp(stated.spread * (field() + rng.standard_normal()))
+    error = np.abs(elevation + np.arctan2(view.camera_height_m, view.closed_range_m))
+    error = gaussian_filter1d(error, smoothing / 4, mode="wrap")
+    aware = field() < ndtri(stated.aware)
+    share = gaussian_filter1d(aware.astype(np.float64), smoothing / 4, mode="wrap")
+    return np.asarray(np.hypot(usual, share * error))
 
 
 def column_field(

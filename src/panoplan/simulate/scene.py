@@ -300,6 +300,11 @@ def noisy_view(
     position, heading = pose.translation[[0, 2]], heading_of(pose.rotation)
     behind = [k for k, _ in building.neighbours(room)]
     near = [k for k in behind if _before(building.passages[k], position)]
+    # The leaks of a camera that stands in a passage begin there. The coarser grades do without.
+    begin = {
+        k: _depth_within(building.passages[k], room, position)
+        for k in (near if model.doorway_leak else [])
+    }
     leaks = draw_leaks(
         [k for k in behind if building.passages[k].kind == "door"],
         [k for k in behind if building.passages[k].kind == "opening"],
@@ -312,7 +317,7 @@ def noisy_view(
         heading,
         way.camera_height_m - float(pose.translation[1]),
         width=width,
-        leaks={k: leak.depth_m for k, leak in leaks.items()},
+        leaks={k: leak.depth_m + begin.get(k, 0.0) for k, leak in leaks.items()},
         room=room,
     )
     view = partly_closed(view, leaks, rng)
@@ -327,6 +332,13 @@ def _before(passage: Passage, position: FloatArray) -> bool:
     """Whether a camera stands in a passage or closer to it than `_DOORWAY_M`."""
     away = shapely.distance(shapely.Polygon(passage.area), shapely.Point(position))
     return bool(away < _DOORWAY_M)
+
+
+def _depth_within(passage: Passage, room: int, position: FloatArray) -> float:
+    """How far beyond its room's face of a passage a camera stands, metres; 0 before it."""
+    side = passage.side(room)
+    outward = passage.outward * (1.0 if side == 0 else -1.0)
+    return max(float(outward @ (position - passage.faces[side, 0])), 0.0)
 
 
 def _some(trajectory: Trajectory, kept: IntArray) -> Trajectory:

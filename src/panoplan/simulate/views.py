@@ -270,7 +270,9 @@ def tilted(layout: Layout, level_from_cam: FloatArray) -> Layout:
         floor,
         None if ceiling is None else _tilted_boundary(ceiling, columns, level_from_cam),
         corners,
-        spans=_tilted_spans(layout, level_from_cam),
+        # A few degrees move it by less than it says itself.
+        layout.floor_sigma,
+        _tilted_spans(layout, level_from_cam),
     )
 
 
