@@ -21,8 +21,8 @@ def add_parser(commands: Any) -> None:
         description="v1: the paper's tables on simulated buildings. accuracy: on simulated flats. "
         "metric: whether the ± of metres holds. home: on a scene with known truth. misplaced: one "
         "room's cameras of a tour shifted, on simulated flats or on a scene. difficulty: a scene's "
-        "real layouts against simulated ones. runtime: time and memory on a long walk. odometry: on "
-        "rendered walks. table: writes what they measured into a page.",
+        "real layouts against simulated ones. runtime: time and memory on a long walk. odometry: "
+        "on rendered walks. table: writes what they measured into a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
     parser.add_argument(
