@@ -13,7 +13,7 @@ def test_every_kind_is_written(tmp_path):
     names = [path.name for path in made]
     assert names == [
         "sheet_1.svg", "sheet_2.svg", "sheet.pdf", "plan.dxf", "plan.geojson", "plan.ifc",
-        "plan.glb", "rooms.csv",
+        "plan.glb", "rooms.csv", "report.html",
     ]  # fmt: skip
     assert sorted(path.name for path in (tmp_path / "new" / "out").iterdir()) == sorted(names)
 

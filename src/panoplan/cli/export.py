@@ -29,7 +29,8 @@ def add_parser(commands: Any) -> None:
         "--to",
         required=True,
         metavar="KIND,KIND",
-        help="of svg and pdf (sheets in true scale), dxf, geojson, ifc, glb, csv (room schedule)",
+        help="of svg and pdf (sheets in true scale), dxf, geojson, ifc, glb, csv (room "
+        "schedule), html (report)",
     )
     parser.add_argument("-o", "--output", type=Path, required=True, help="folder to write to")
     parser.add_argument("--title", help="of the sheets (default: the name of the plan's folder)")
@@ -53,8 +54,8 @@ def add_parser(commands: Any) -> None:
         "--images",
         type=Path,
         metavar="FOLDER",
-        help="upright panoramas named after their keyframes, or a scene with images: texture of "
-        "the GLB",
+        help="upright panoramas named after their keyframes, or a scene with images: for "
+        "the texture of the GLB and for the report",
     )
     parser.add_argument("--quiet", action="store_true", help="no progress")
     parser.set_defaults(act=act)
@@ -70,7 +71,7 @@ def act(options: argparse.Namespace) -> int:
     edited = read_edited(options.plan)
     for lost in edited.lost:
         print(f"panoplan: edit not applied: {lost}", file=sys.stderr)
-    with progress("surfaces", quiet=options.quiet or options.images is None) as report:
+    with progress("images", quiet=options.quiet or options.images is None) as report:
         told = ExportOptions(
             title=options.title or options.plan.resolve().parent.name,
             north=north,

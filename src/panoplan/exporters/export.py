@@ -13,6 +13,11 @@ from panoplan.types.plan import FloorPlan
 
 Files = Mapping[str, bytes]
 
+TEXEL_M = 0.0125
+"""Size of a texel of the GLB."""
+
+_REPORT_TEXEL_M = 0.04
+
 
 @dataclass(frozen=True)
 class ExportOptions:
@@ -73,14 +78,28 @@ def _ifc(plan: FloorPlan, options: ExportOptions) -> Files:
 
 
 def _glb(plan: FloorPlan, options: ExportOptions) -> Files:
+    return {"plan.glb": _model(plan, options, TEXEL_M, options.progress)}
+
+
+def _html(plan: FloorPlan, options: ExportOptions) -> Files:
+    from panoplan.exporters.report.page import report_html
+
+    model = _model(plan, options, _REPORT_TEXEL_M, lambda done, total: None)
+    page = report_html(plan, options.title, options.images, model, options.progress)
+    return {"report.html": page}
+
+
+def _model(
+    plan: FloorPlan, options: ExportOptions, texel_m: float, progress: Callable[[int, int], None]
+) -> bytes:
     from panoplan.exporters.model.glb import plan_glb
     from panoplan.exporters.model.surfaces import plan_surfaces
     from panoplan.exporters.model.texture import pictures, read_photos
 
     surfaces = plan_surfaces(plan)
     photos = read_photos(plan, options.images)
-    made = pictures(surfaces, photos, progress=options.progress) if photos else {}
-    return {"plan.glb": plan_glb(plan, surfaces, made)}
+    made = pictures(surfaces, photos, texel_m, progress) if photos else {}
+    return plan_glb(plan, surfaces, made)
 
 
 def _csv(plan: FloorPlan, options: ExportOptions) -> Files:
@@ -97,6 +116,7 @@ KINDS: Mapping[str, Callable[[FloorPlan, ExportOptions], Files]] = {
     "ifc": _ifc,
     "glb": _glb,
     "csv": _csv,
+    "html": _html,
 }
 """Exporters by the name that the command line knows."""
 

@@ -18,9 +18,6 @@ from panoplan.formats.panoramas import read_panorama
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import FloorPlan
 
-TEXEL_M = 0.0125
-"""Size of a texel."""
-
 EDGE = 2
 """Texels beyond the edges of a surface, so that no colour bleeds in."""
 
@@ -77,7 +74,7 @@ def read_photos(plan: FloorPlan, files: Mapping[str, Path]) -> tuple[Photo, ...]
 def pictures(
     surfaces: Sequence[Surface],
     photos: Sequence[Photo],
-    texel_m: float = TEXEL_M,
+    texel_m: float,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> dict[str, Picture]:
     """Pictures of those surfaces that a photo shows, by their id.

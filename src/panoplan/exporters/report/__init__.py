@@ -1,0 +1,1 @@
+"""The report: one page that holds all it shows. Its script is built from web/."""
