@@ -81,4 +81,4 @@ def test_photos_stand_where_the_cameras_do(tmp_path):
 
 
 def test_without_a_photo_there_is_no_picture():
-    assert pictures(plan_surfaces(painted_plan()), ()) == {}
+    assert pictures(plan_surfaces(painted_plan()), (), texel_m=0.05) == {}
