@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Literal, Protocol
 
@@ -14,8 +15,11 @@ from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.exporters.explain.pictures import FOLDER, forget_explanation, write_explanation
 from panoplan.exporters.pictures import write_plan_pictures
+from panoplan.exporters.storeys import room_area
 from panoplan.formats.edits_json import EDITS, read_edits
 from panoplan.formats.run_folder import RunFolder
+from panoplan.types.events import Event
+from panoplan.types.keyframe import Keyframe
 from panoplan.types.plan import FloorPlan, Skipped
 
 
@@ -24,6 +28,23 @@ class Progress(Protocol):
 
     def __call__(self, done: int, total: int, title: str = ..., /) -> None:
         """`done` of `total`; a title where something else than keyframes is counted."""
+
+
+class Watcher(Protocol):
+    """Sees the run as it goes."""
+
+    def update(
+        self,
+        number: int,
+        keyframe: Keyframe,
+        events: Sequence[Event],
+        plan: Callable[[], FloorPlan],
+        /,
+    ) -> None:
+        """A keyframe was taken in; `plan` gives the plan so far."""
+
+    def show_plan(self, plan: FloorPlan, /) -> None:
+        """The plan at the end."""
 
 
 @dataclass(frozen=True)
@@ -47,6 +68,7 @@ def run(
     options: RunOptions,
     folder: RunFolder,
     progress: Progress,
+    watcher: Watcher | None = None,
 ) -> FloorPlan:
     """Estimates the plan of a scene and writes plan.json, plan.svg, plan.png and log.jsonl.
 
@@ -60,7 +82,9 @@ def run(
         config: settings.
         options: what is known of the walk.
         folder: where to; its log and its saved state are kept up to date.
-        progress: called with (keyframes done, keyframes in all), then with those of pictures.
+        progress: called with (keyframes done, keyframes in all) and how many rooms there are,
+            then with those of pictures.
+        watcher: shown each keyframe and what came of it, or None.
 
     Returns:
         The plan.
@@ -72,9 +96,13 @@ def run(
     estimator = FloorPlanEstimator(config, walk, state=state)
     try:
         for number in range(estimator.state.seen, len(scene.keyframes)):
-            folder.record(number, estimator.update(scene.keyframes[number]))
+            events = estimator.update(scene.keyframes[number])
+            folder.record(number, events)
             folder.save(estimator.state)
-            progress(number + 1, len(scene.keyframes))
+            if watcher is not None:
+                watcher.update(number, scene.keyframes[number], events, estimator.plan)
+            told = f"keyframes, {len(estimator.state.rooms)} rooms"
+            progress(number + 1, len(scene.keyframes), told)
     except KeyboardInterrupt:
         folder.save(estimator.state, now=True)
         raise
@@ -84,6 +112,8 @@ def run(
     plan = replace(plan, level_rotation=scene.level_rotation, skipped=(*unread, *plan.skipped))
     edited = apply(plan, read_edits(folder.path / EDITS))
     write_plan_pictures(folder.path, edited.plan)
+    if watcher is not None:
+        watcher.show_plan(edited.plan)
     if options.explain:
         explanation = explain(estimator.state, scene.keyframes, config)
         write_explanation(
@@ -111,6 +141,11 @@ def summary(plan: FloorPlan) -> str:
         lines.append("; ".join(told))
     if plan.metric is not None:
         lines.append(f"metres by {plan.metric.source}, ± {100 * plan.metric.sigma:.1f} %")
+    unit = "m²" if plan.unit == "m" else "ch²"
+    for room in shaped:
+        area = float(room_area(room).area)
+        sigma = "" if room.area_sigma is None else f" ± {room.area_sigma:.1f}"
+        lines.append(f"{room.id}: {area:.1f}{sigma} {unit}")
     for room in plan.rooms:
         if room.polygon is None:
             lines.append(f"{room.id}: no shape, {room.failure}")

@@ -3,13 +3,19 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from panoplan.cli import settings
 from panoplan.cli.layout import add_network_arguments
 from panoplan.cli.progress import progress
+
+if TYPE_CHECKING:
+    from panoplan.datasets.scene import Scene
+    from panoplan.pipeline import Watcher
 
 EXIT_NO_ROOM = 3
 
@@ -38,6 +44,13 @@ def add_parser(commands: Any) -> None:
         action="store_true",
         help="also write a picture a stage into OUTPUT/explain: scale, rooms, then views and fused "
         "floors, or wall planes and the rounds of iSPA, as the preset has it",
+    )
+    parser.add_argument(
+        "--live",
+        nargs="?",
+        const="",
+        metavar="FILE.rrd",
+        help="shows the run as it goes in the Rerun viewer, or writes it into a file for it",
     )
     parser.add_argument("--force", action="store_true", help="write into a folder of other files")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
@@ -71,11 +84,32 @@ def act(options: argparse.Namespace) -> int:
         walk = Walk(camera_height_m=options.camera_height)
         live = partial(LivePlan, config, walk, partial(folder.show, config))
         scene, told = open_input(given, folder.scene, Cache(cache_folder()), report, live)
-        plan = run(scene, config, known, folder, report)
+        images = [path for path in (options.input, folder.scene) if path.is_dir()]
+        with _watcher(options.live, images, scene) as watcher:
+            plan = run(scene, config, known, folder, report, watcher)
     if not options.quiet:
         lines = [f"{scene.kind}: {scene.association}", *told.lines, summary(plan)]
         print("\n".join([*lines, str(folder.path / "plan.json")]))
     return 0 if any(room.polygon is not None for room in plan.rooms) else EXIT_NO_ROOM
+
+
+@contextmanager
+def _watcher(live: str | None, images: Sequence[Path], scene: Scene) -> Iterator[Watcher | None]:
+    if live is None:
+        yield None
+        return
+    from panoplan.formats.panoramas import find_panoramas
+    from panoplan.viewers.live import LiveView
+
+    ids = [keyframe.id for keyframe in scene.keyframes]
+    found: dict[str, Path] = {}
+    for folder in images:
+        found = {**find_panoramas(folder, ids), **found}
+    view = LiveView(Path(live) if live else None, found)
+    try:
+        yield view
+    finally:
+        view.close()
 
 
 def _metres(text: str) -> float:
