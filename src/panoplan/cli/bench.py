@@ -22,21 +22,22 @@ def add_parser(commands: Any) -> None:
         "metric: whether the ± of metres holds. home: on a scene with known truth. misplaced: one "
         "room's cameras of a tour shifted, on simulated flats or on a scene. difficulty: a scene's "
         "real layouts against simulated ones. runtime: time and memory on a long walk. odometry: "
-        "on rendered walks. table: writes what they measured into a page.",
+        "on rendered walks. tour: joining a scene's photos. table: writes what they measured into "
+        "a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
     parser.add_argument(
         "what",
         choices=[
             "v1", "accuracy", "metric", "home", "misplaced", "difficulty", "runtime", "odometry",
-            "table",
+            "tour", "table",
         ],
     )  # fmt: skip
     parser.add_argument(
         "input",
         nargs="?",
         type=Path,
-        help="home, misplaced, difficulty: the scene; odometry: walks; table: the page",
+        help="home, misplaced, difficulty, tour: the scene; odometry: walks; table: the page",
     )
     parser.add_argument("--flats", type=int, default=20, metavar="N", help="seeds 0 to N-1 a grade")
     parser.add_argument("--trials", type=int, default=40, metavar="N", help="misplaced: how many")
@@ -74,11 +75,15 @@ def act(options: argparse.Namespace) -> int:
         odometry,
         runtime,
         table,
+        tour,
     )
     from panoplan.bench.record import record
     from panoplan.config import as_dict
 
-    if options.what in ("home", "difficulty", "odometry", "table") and options.input is None:
+    if (
+        options.what in ("home", "difficulty", "odometry", "tour", "table")
+        and options.input is None
+    ):
         raise InputError(f"bench {options.what}", "no path", f"bench {options.what} PATH")
     if options.what == "table":
         changed = table.update(options.input, options.results)
@@ -102,6 +107,8 @@ def act(options: argparse.Namespace) -> int:
                 figures = misplaced.measure_flats(range(trials), config, report)
             else:
                 figures = misplaced.measure_home(options.input, config, trials, report)
+        elif options.what == "tour":
+            figures = tour.measure(options.input, config, report)
         elif options.what == "odometry":
             figures = odometry.measure(_walks(options.input), report)
         elif options.what == "difficulty":
