@@ -6,12 +6,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import shapely
 from tests.scenes import RECTANGLE, walk
 
 from panoplan.cli.main import main
-from panoplan.datasets.detect import read_truth
+from panoplan.datasets.detect import open_scene, read_truth
+from panoplan.formats.mp3d_fpe import read_mp3d_fpe
 from panoplan.formats.plan_json import read_plan
+from panoplan.formats.ply import read_ply_points
 from panoplan.formats.sequence import write_sequence
+from panoplan.simulate.families import simulate_scene
 from panoplan.types.layout import Layout
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "flat"
@@ -73,6 +77,32 @@ def test_simulate_makes_scenes_of_a_family(tmp_path, capsys):
     assert all(len(read_truth(folder).plan.rooms) >= 3 for folder in folders)
     assert main([*words, "-o", str(tmp_path / "mp3d"), "--format", "mp3d-fpe"]) == 0
     assert all(read_truth(folder).trajectory for folder in (tmp_path / "mp3d").iterdir())
+
+
+def test_simulate_writes_whole_mp3d_fpe_scenes(tmp_path, capsys):
+    scene = tmp_path / "flat" / "0"
+    words = ["--family", "flat", "--seed", "19", "--format", "mp3d-fpe", "--quiet"]
+    assert main(["simulate", "-o", str(scene), *words]) == 0
+    made = simulate_scene("flat", 19)
+    read = open_scene(scene)
+    assert [int(k.id) for k in read.keyframes] == [int(k.id) for k in made.keyframes]
+    odometry = read_mp3d_fpe(scene).trajectory
+    np.testing.assert_allclose(odometry.translations, made.odometry.translations, atol=1e-9)
+    for a, b in zip(read.keyframes, made.keyframes, strict=True):
+        gap = np.abs(a.layout.floor_boundary - b.layout.floor_boundary)
+        assert np.median(gap) < 1e-3
+    truth = read_truth(scene)
+    np.testing.assert_allclose(
+        truth.trajectory.translations, made.truth.trajectory.translations, atol=1e-9
+    )
+    assert len(truth.plan.rooms) == len(made.building.rooms)
+    assert len((scene / "frm_ref.txt").read_text().splitlines()) == len(made.frames)
+    points = read_ply_points(scene / "pcl.ply")
+    cameras = made.truth.trajectory.translations
+    assert np.quantile(points[:, 1], 0.1) < cameras[:, 1].min()
+    assert points[:, 1].max() == pytest.approx(made.camera_height_m, abs=0.1)
+    floor = shapely.union_all([room.floor for room in made.building.rooms]).buffer(0.3)
+    assert shapely.contains_xy(floor, points[::500, [0, 2]]).mean() > 0.99
 
 
 @pytest.mark.parametrize(

@@ -133,7 +133,6 @@ def _write(
     options: argparse.Namespace,
     images: dict[str, str] | None,
 ) -> None:
-    from panoplan.formats.mp3d_fpe import write_mp3d_fpe
     from panoplan.formats.sequence import write_sequence
 
     if options.format == "sequence":
@@ -141,5 +140,24 @@ def _write(
             folder, scene.name, scene.keyframes, scene.truth, scene.camera_height_m, images
         )
         return
-    numbered = [replace(k, id=str(n + 1)) for n, k in enumerate(scene.keyframes)]
-    write_mp3d_fpe(folder if options.scenes is None else folder / "0", numbered, scene.truth)
+    _write_mp3d_fpe(scene, folder if options.scenes is None else folder / "0", options.seed)
+
+
+def _write_mp3d_fpe(scene: SimulatedScene, folder: Path, seed: int) -> None:
+    """Writes a scene with its cloud; keyframes of a video have the numbers of their frames."""
+    import numpy as np
+
+    from panoplan.bench.points.scan import scanned
+    from panoplan.formats.mp3d_fpe import write_mp3d_fpe
+    from panoplan.formats.ply import write_ply_points
+
+    numbered = [
+        replace(k, id=str(n + 1 if scene.frames is None else int(k.id)))
+        for n, k in enumerate(scene.keyframes)
+    ]
+    write_mp3d_fpe(folder, numbered, scene.truth, scene.frames)
+    points = scanned(scene.building, scene.camera_height_m, seed)
+    # The higher the lighter: there is no texture to take colours from.
+    low, high = points[:, 1].max(), points[:, 1].min()
+    shade = 60 + 180 * (low - points[:, 1]) / max(low - high, 1e-9)
+    write_ply_points(folder / "pcl.ply", points, np.repeat(shade[:, None], 3, 1).astype(np.uint8))

@@ -131,7 +131,10 @@ def read_mp3d_fpe_truth(folder: Path) -> GroundTruth:
 
 
 def write_mp3d_fpe(
-    folder: Path, keyframes: Sequence[Keyframe], truth: GroundTruth | None = None
+    folder: Path,
+    keyframes: Sequence[Keyframe],
+    truth: GroundTruth | None = None,
+    frames: Trajectory | None = None,
 ) -> None:
     """Writes one version of one scene, without images, depth and cloud.
 
@@ -142,18 +145,20 @@ def write_mp3d_fpe(
         folder: `<root>/<scene>/<version>`, made where it does not exist.
         keyframes: at least one; ids are frame numbers from 1 up, written as "1", "2", ...
         truth: for label.json and frm_ref.txt; its trajectory has one pose a keyframe, in the same
-            order, or is None. Frames that are no keyframes get an invalid pose.
+            order, or is None.
+        frames: true poses of all frames of the video, labelled with their numbers; without them
+            frames that are no keyframes get an invalid pose.
 
     Raises:
         InputError: no keyframe; ids that are no frame numbers or stand twice; a true trajectory
             of another length; or a place that cannot be written.
     """
-    frames = _frame_numbers(keyframes, folder)
+    numbers = _frame_numbers(keyframes, folder)
     odometry = folder / "vo_final"
     make_folder(odometry / _LAYOUTS)
-    order = np.argsort(frames)
+    order = np.argsort(numbers)
     poses = {
-        frames[k]: _pose_fields(keyframes[k].pose.rotation, keyframes[k].pose.translation)
+        numbers[k]: _pose_fields(keyframes[k].pose.rotation, keyframes[k].pose.translation)
         for k in order
     }
     for k in order:
@@ -161,11 +166,11 @@ def write_mp3d_fpe(
         if layout is not None:
             buffer = io.BytesIO()
             np.save(buffer, _boundary_rows(layout), allow_pickle=False)
-            write_bytes(odometry / _LAYOUTS / f"{frames[k]}.npy", buffer.getvalue())
+            write_bytes(odometry / _LAYOUTS / f"{numbers[k]}.npy", buffer.getvalue())
     lines = [",".join([str(frame), *fields]) for frame, fields in poses.items()]
     write_text(odometry / _POSES, "\n".join(lines) + "\n")
     if truth is not None:
-        _write_truth(folder, frames, truth)
+        _write_truth(folder, numbers, truth, frames)
     write_text(odometry / _KEYFRAMES, "".join(f"{frame}\n" for frame in poses))
 
 
@@ -277,20 +282,20 @@ def _boundary_rows(layout: Layout) -> np.ndarray[tuple[int, int], np.dtype[np.fl
     return rows.astype(np.float32)
 
 
-def _write_truth(folder: Path, frames: list[int], truth: GroundTruth) -> None:
+def _write_truth(
+    folder: Path, numbers: list[int], truth: GroundTruth, frames: Trajectory | None
+) -> None:
     true = truth.trajectory
     if true is not None:
-        if len(true) != len(frames):
-            found = f"{len(true)} true poses of {len(frames)} keyframes"
+        if len(true) != len(numbers):
+            found = f"{len(true)} true poses of {len(numbers)} keyframes"
             raise InputError(folder, found, "one a keyframe")
-        known = {
-            frame: _pose_fields(true.rotations[k], true.translations[k])
-            for k, frame in enumerate(frames)
-        }
+        known = _fields_by_number(true, numbers)
+        if frames is not None:
+            known |= _fields_by_number(frames, [int(label) for label in frames.labels])
         invalid = ["0"] * 7
         lines = [
-            " ".join([str(frame), *known.get(frame, invalid)])
-            for frame in range(1, max(frames) + 1)
+            " ".join([str(frame), *known.get(frame, invalid)]) for frame in range(1, max(known) + 1)
         ]
         write_text(folder / _TRUE_POSES, "\n".join(lines) + "\n")
     axis = truth.plan.axis
@@ -300,3 +305,10 @@ def _write_truth(folder: Path, frames: list[int], truth: GroundTruth) -> None:
         "version": "1.0",
     }
     write_text(folder / _LABEL, json.dumps(label, indent=1) + "\n")
+
+
+def _fields_by_number(poses: Trajectory, numbers: list[int]) -> dict[int, list[str]]:
+    return {
+        number: _pose_fields(poses.rotations[k], poses.translations[k])
+        for k, number in enumerate(numbers)
+    }

@@ -5,8 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from panoplan.errors import InputError, MissingExtraError
+from panoplan.formats.atomic import write_bytes
 from panoplan.types.arrays import FloatArray, frozen_array
 
 _LIMIT = 8 * 2**30
@@ -40,3 +42,28 @@ def read_ply_points(path: Path) -> FloatArray:
     except (PlyParseError, KeyError, ValueError, OSError, UnicodeDecodeError) as error:
         raise InputError(path, f"no point cloud ({error})", "PLY with x, y, z") from None
     return frozen_array(str(path), points, (None, 3))
+
+
+def write_ply_points(path: Path, points: FloatArray, colours: NDArray[np.uint8]) -> None:
+    """Writes points as a binary PLY with x, y, z, red, green, blue.
+
+    Args:
+        path: to write to.
+        points: (N, 3) any unit; written as 32-bit floats.
+        colours: (N, 3).
+
+    Raises:
+        InputError: the place cannot be written.
+    """
+    axes = [(axis, "<f4") for axis in "xyz"]
+    channels = [(channel, "u1") for channel in ("red", "green", "blue")]
+    vertices = np.empty(len(points), dtype=axes + channels)
+    for k, (axis, _) in enumerate(axes):
+        vertices[axis] = points[:, k]
+    for k, (channel, _) in enumerate(channels):
+        vertices[channel] = colours[:, k]
+    kinds = [f"property float {axis}" for axis, _ in axes]
+    kinds += [f"property uchar {channel}" for channel, _ in channels]
+    count = f"element vertex {len(points)}"
+    lines = ["ply", "format binary_little_endian 1.0", count, *kinds, "end_header", ""]
+    write_bytes(path, "\n".join(lines).encode("ascii") + vertices.tobytes())
