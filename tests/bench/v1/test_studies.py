@@ -17,7 +17,7 @@ from panoplan.bench.v1.sweeps import SWEEPS, Swept, noise, thinned
 from panoplan.bench.v1.tables import scale as scale_table
 from panoplan.bench.v1.tables import shapes, sweeps
 from panoplan.metrics.alignment import align
-from panoplan.simulate.noise import HARD
+from panoplan.simulate.noise import REAL
 
 HERE = processes(1)
 
@@ -82,15 +82,19 @@ def test_the_error_of_the_scale_by_layouts(source, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("swept", list(SWEEPS))
 def test_a_factor_of_one_changes_nothing(swept):
-    assert noise(swept, 1.0) == HARD
+    assert noise(swept, 1.0) == REAL
 
 
 def test_each_sweep_changes_its_own_error():
     drift, leaks, layouts = noise("drift", 2), noise("leaks", 4), noise("layout errors", 0.5)
-    assert (drift.drift_m, drift.bins, drift.door_leak) == (0.8, HARD.bins, HARD.door_leak)
-    assert (leaks.door_leak, leaks.opening_leak, leaks.drift_m) == (0.32, 1.0, HARD.drift_m)
-    assert [b.core_deg for b in layouts.bins] == [b.core_deg / 2 for b in HARD.bins]
-    assert (layouts.scale_std, layouts.drift_m) == (HARD.scale_std / 2, HARD.drift_m)
+    assert drift.odometry.heading_deg == 2 * REAL.odometry.heading_deg
+    assert drift.odometry.lost_share == REAL.odometry.lost_share
+    assert (drift.bins, drift.door_leak) == (REAL.bins, REAL.door_leak)
+    assert leaks.door_leak == min(1.0, 4 * REAL.door_leak)
+    assert leaks.opening_leak + leaks.opening_part <= 1.0
+    assert leaks.odometry == REAL.odometry
+    assert [b.core_deg for b in layouts.bins] == [b.core_deg / 2 for b in REAL.bins]
+    assert (layouts.scale_std, layouts.odometry) == (REAL.scale_std / 2, REAL.odometry)
 
 
 def test_fewer_keyframes_have_the_same_rooms_to_find(source):

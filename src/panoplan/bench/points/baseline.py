@@ -49,8 +49,8 @@ class PointsConfig:
     wall_beside: float = 0.5
     weight_orientation: float = 20.0
     weight_plane: float = 1.0
-    weight_mask: float = 5.0
-    weight_complexity: float = 2.0
+    weight_mask: float = 2.0
+    weight_complexity: float = 4.0
 
 
 def plan_from_points(

@@ -21,7 +21,7 @@ from panoplan.config import Config
 from panoplan.estimator import settle
 from panoplan.metrics.rooms import region
 from panoplan.pipeline import Progress
-from panoplan.simulate.noise import EXACT, HARD
+from panoplan.simulate.noise import EXACT, REAL
 from panoplan.stages.plan.floorplan import PlannedRoom, plan_rooms
 from panoplan.types.arrays import IntArray
 from panoplan.types.pose import Pose
@@ -94,7 +94,7 @@ def ablated(
 def _knowing(source: Simulated, known: Known) -> Recording:
     """The walk with its poses, its scale or its layouts as they truly are."""
     if known == "layouts":
-        exact = replace(EXACT, name="exact layouts", drift_m=HARD.drift_m, drift_deg=HARD.drift_deg)
+        exact = replace(EXACT, name="exact layouts", odometry=REAL.odometry)
         return replace(source, grade=exact).open()
     scene = source.simulated()
     recording = recorded(scene)

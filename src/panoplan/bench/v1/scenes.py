@@ -82,7 +82,7 @@ class Simulated:
 
     family: str
     seed: int
-    grade: Grade | NoiseModel = "hard"
+    grade: Grade | NoiseModel = "measured"
 
     @property
     def name(self) -> str:

@@ -13,7 +13,7 @@ from panoplan.bench.v1.score import score, summary
 from panoplan.bench.v1.store import KeptScene, Store
 from panoplan.bench.v1.study import studied
 from panoplan.pipeline import Progress
-from panoplan.simulate.noise import HARD, NoiseModel
+from panoplan.simulate.noise import REAL, NoiseModel
 
 USUAL = "as it is"
 SWEEPS: dict[str, tuple[float, ...]] = {
@@ -32,29 +32,35 @@ def noise(swept: str, factor: float) -> NoiseModel:
     Args:
         swept: of `SWEEPS`; "keyframes" changes no error.
         factor: on the boundary's own error and the common one of a panorama's ranges; on the
-            odometry's drift; or on the probabilities that a boundary goes through a passage.
+            odometry's errors; or on the probabilities that a boundary goes through a passage.
     """
     if swept == "layout errors":
         bins = (
             replace(b, bias_deg=factor * b.bias_deg, core_deg=factor * b.core_deg)
-            for b in HARD.bins
+            for b in REAL.bins
         )
         return replace(
-            HARD,
+            REAL,
             bins=tuple(bins),
-            scale_std=factor * HARD.scale_std,
-            scale_core_std=factor * HARD.scale_core_std,
-            height_jitter=factor * HARD.height_jitter,
+            scale_std=factor * REAL.scale_std,
+            scale_core_std=factor * REAL.scale_core_std,
+            height_jitter=factor * REAL.height_jitter,
         )
     if swept == "drift":
-        return replace(HARD, drift_m=factor * HARD.drift_m, drift_deg=factor * HARD.drift_deg)
+        usual = REAL.odometry
+        assert usual is not None
+        names = ("slip_m", "heading_deg", "scale", "jump_m", "jump_deg")
+        drift = {name: factor * getattr(usual, name) for name in names}
+        return replace(REAL, odometry=replace(usual, **drift))
     if swept == "leaks":
-        return replace(
-            HARD,
-            door_leak=min(1.0, factor * HARD.door_leak),
-            opening_leak=min(1.0, factor * HARD.opening_leak),
-        )
-    return HARD
+        names = ("door_leak", "opening_leak", "door_part", "opening_part", "doorway_leak")
+        leaks = {name: min(1.0, factor * getattr(REAL, name)) for name in names}
+        # What goes through a passage as a whole does not in a part of it.
+        for kind in ("door", "opening"):
+            whole, part = leaks[f"{kind}_leak"], leaks[f"{kind}_part"]
+            leaks[f"{kind}_part"] = min(part, 1.0 - whole)
+        return replace(REAL, **leaks)
+    return REAL
 
 
 @dataclass(frozen=True)
