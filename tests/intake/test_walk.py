@@ -135,3 +135,19 @@ def test_what_holds_no_panorama_is_one_line_and_exit_2(name, make, told, photos,
     assert told in error
     assert error.count("\n") == 1
     assert not (tmp_path / "out").exists()
+
+
+def test_photos_of_two_homes_are_two_groups_and_told(photos, tmp_path, capsys):
+    folder = tmp_path / "two"
+    (folder / "images").mkdir(parents=True)
+    shutil.copy(photos / "images" / "p3.jpg", folder / "images" / "p3.jpg")
+    other = box_room(-2, 2, -1.5, 1.5, np.random.default_rng(9))
+    write_jpeg(folder / "images" / "p4.jpg", picture(other, np.eye(3), np.zeros(3), 512))
+    words = ["run", str(folder), "--layouts", str(photos / "layouts_pred")]
+    assert main([*words, "-o", str(tmp_path / "out"), "--camera-height", "1.5"]) == 0
+    told = capsys.readouterr().out
+    assert "1 of 2 photos have poses in one frame" in told
+    assert "1 other groups of 1 photos could not be joined" in told
+    plan = read_plan(tmp_path / "out" / "plan.json")
+    assert plan.unit == "m"
+    np.testing.assert_allclose(room_size(plan), [3, 4], rtol=0.05)

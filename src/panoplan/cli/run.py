@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -77,13 +78,17 @@ def act(options: argparse.Namespace) -> int:
         options.version,
         options.model,
         options.average,
+        options.camera_height,
     )
     folder = RunFolder(options.output, force=options.force)
     known = RunOptions(options.trajectory_unit, options.camera_height, options.explain)
     with progress("keyframes", quiet=options.quiet) as report:
         walk = Walk(camera_height_m=options.camera_height)
         live = partial(LivePlan, config, walk, partial(folder.show, config))
-        scene, told = open_input(given, folder.scene, Cache(cache_folder()), report, live)
+        cache = Cache(cache_folder())
+        scene, told = open_input(given, folder.scene, cache, report, live, config)
+        if told.trajectory_unit == "m":
+            known = replace(known, trajectory_unit="m")
         images = [path for path in (options.input, folder.scene) if path.is_dir()]
         with _watcher(options.live, images, scene) as watcher:
             plan = run(scene, config, known, folder, report, watcher)

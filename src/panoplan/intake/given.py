@@ -24,6 +24,7 @@ class Given:
         version: of an MP3D-FPE scene that has several.
         model: layout network used instead of the shipped one.
         averaging: what the network is asked besides the image as it is.
+        camera_height_m: above the floor in metres, None where it is not known.
     """
 
     path: Path
@@ -32,6 +33,7 @@ class Given:
     version: str | None = None
     model: Path | None = None
     averaging: tuple[Averaging, ...] = ()
+    camera_height_m: float | None = None
 
 
 def recognise(given: Given) -> Kind:

@@ -6,13 +6,16 @@ from collections.abc import Callable
 from pathlib import Path
 
 from panoplan.cache import Cache
+from panoplan.config import Config
 from panoplan.datasets.detect import image_files, open_scene
 from panoplan.datasets.scene import Scene
 from panoplan.intake.given import Given, recognise
 from panoplan.intake.layouts import open_images_with_poses
 from panoplan.intake.live import LayoutOf, LivePlan
 from panoplan.intake.panoramas import Panoramas
-from panoplan.intake.walk import Report, open_walk
+from panoplan.intake.scene_folder import Report
+from panoplan.intake.tour import is_tour, open_tour
+from panoplan.intake.walk import open_walk
 from panoplan.pipeline import Progress
 
 
@@ -22,6 +25,7 @@ def open_input(
     cache: Cache,
     progress: Progress,
     live: Callable[[LayoutOf], LivePlan],
+    config: Config,
 ) -> tuple[Scene, Report]:
     """Opens whatever was given and makes what is missing.
 
@@ -31,6 +35,7 @@ def open_input(
         cache: of what was computed before.
         progress: is told how far the work has come.
         live: makes the plan that grows while a walk is followed.
+        config: settings.
 
     Returns:
         The scene, and what else there is to tell; images without a layout and the reasons are in
@@ -48,11 +53,13 @@ def open_input(
             layouts=given.layouts,
             version=given.version,
         )
-        return scene, Report(())
+        return scene, Report()
     if kind == "images with poses":
-        return open_images_with_poses(given, work, cache, progress), Report(())
+        return open_images_with_poses(given, work, cache, progress), Report()
     if kind == "video":
         panoramas = Panoramas.of_video(given.path)
     else:
         panoramas = Panoramas.of_images(given.path, image_files(given.path))
+        if is_tour(panoramas):
+            return open_tour(given, panoramas, work, cache, progress, config)
     return open_walk(given, panoramas, work, cache, progress, live)

@@ -4,27 +4,25 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from panoplan.cache import Cache, content_key
 from panoplan.datasets.detect import own_layouts
 from panoplan.datasets.folder import open_folder
 from panoplan.datasets.scene import Scene
 from panoplan.errors import InputError
-from panoplan.formats.atomic import make_folder, write_text
+from panoplan.formats.atomic import make_folder
 from panoplan.formats.image import write_jpeg
-from panoplan.formats.sequence import DESCRIPTION, TRAJECTORY
-from panoplan.formats.tum import write_tum
 from panoplan.geometry.panorama import turned
 from panoplan.intake.given import Given
 from panoplan.intake.layouts import layout_of, open_network, predict, with_reasons
 from panoplan.intake.live import LayoutOf, LivePlan
 from panoplan.intake.panoramas import Panoramas
+from panoplan.intake.scene_folder import IMAGES, Report, plain, trajectory_of, write_scene
 from panoplan.layouts.files import list_layouts, read_layout
 from panoplan.layouts.onnx import OnnxLayouts
 from panoplan.pipeline import Progress
@@ -41,20 +39,8 @@ from panoplan.poses.walk.follow import (
 from panoplan.poses.walk.keyframes import EVERY_IMAGE
 from panoplan.types.pose import Trajectory
 
-IMAGES = "images"
 _STAGE = "walk 1"
 _LEVEL_DEG = 0.5
-
-
-@dataclass(frozen=True)
-class Report:
-    """What is told of a walk beside its scene.
-
-    Attributes:
-        lines: for the terminal.
-    """
-
-    lines: tuple[str, ...]
 
 
 def open_walk(
@@ -172,12 +158,7 @@ def _write_keyframes(
         write_jpeg(work / IMAGES / f"{seen.name}.jpg", pixels)
         done += 1
         progress(done, len(numbers), "keyframes")
-    write_tum(work / TRAJECTORY, stand)
-    entries = [
-        {"id": name, "image": f"{IMAGES}/{name}.jpg", "order": k} for name, k in numbers.items()
-    ]
-    description = {"name": panoramas.source.stem or "walk", "keyframes": entries}
-    write_text(work / DESCRIPTION, json.dumps(description, ensure_ascii=False, indent=1) + "\n")
+    write_scene(work, panoramas.source, stand)
 
 
 def _report(walked: Walked, masked: float, tilts: Any, panoramas: Panoramas) -> Report:
@@ -203,22 +184,12 @@ def _report(walked: Walked, masked: float, tilts: Any, panoramas: Panoramas) -> 
 
 def _plain(walked: Walked) -> dict[str, Any]:
     return {
-        "maps": [
-            {
-                "labels": list(map.labels),
-                "translations": map.translations.tolist(),
-                "quaternions": Rotation.from_matrix(map.rotations).as_quat().tolist(),
-            }
-            for map in walked.maps
-        ],
+        "maps": [plain(map) for map in walked.maps],
         "lost": list(walked.lost),
         "passed_over": walked.passed_over,
     }
 
 
 def _walked(data: Mapping[str, Any]) -> Walked:
-    maps = tuple(
-        Trajectory.from_quaternions(tuple(m["labels"]), m["translations"], m["quaternions"])
-        for m in data["maps"]
-    )
+    maps = tuple(trajectory_of(map) for map in data["maps"])
     return Walked(maps, tuple(data["lost"]), data["passed_over"])
