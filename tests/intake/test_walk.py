@@ -5,7 +5,7 @@ import wave
 import numpy as np
 import pytest
 from PIL import Image
-from tests.scenes import exact_layout
+from tests.scenes import exact_layout, yaw
 from tests.walks import box_room, path_poses, picture
 
 from panoplan.cli.main import main
@@ -142,7 +142,7 @@ def test_photos_of_two_homes_are_two_groups_and_told(photos, tmp_path, capsys):
     (folder / "images").mkdir(parents=True)
     shutil.copy(photos / "images" / "p3.jpg", folder / "images" / "p3.jpg")
     other = box_room(-2, 2, -1.5, 1.5, np.random.default_rng(9))
-    write_jpeg(folder / "images" / "p4.jpg", picture(other, np.eye(3), np.zeros(3), 512))
+    write_jpeg(folder / "images" / "p4.jpg", picture(other, yaw(0.3), np.array([0.4, 0, 0.3]), 512))
     words = ["run", str(folder), "--layouts", str(photos / "layouts_pred")]
     assert main([*words, "-o", str(tmp_path / "out"), "--camera-height", "1.5"]) == 0
     told = capsys.readouterr().out

@@ -114,8 +114,8 @@ def open_tour(
     scene = with_reasons(open_folder(work, layouts=folder), predicted)
     left = {**reasons, **panoramas.left_out}
     scene = replace(scene, kind="photo tour", skipped=(*scene.skipped, *left.items()))
-    unit = "unknown" if given.camera_height_m is None else "m"
-    return scene, Report(_lines(groups, reasons, panoramas), unit)
+    lines = _lines(groups, reasons, panoramas)
+    return scene, Report(lines) if given.camera_height_m is None else Report(lines, "m")
 
 
 class _Greys(Mapping[str, NDArray[np.uint8]]):
