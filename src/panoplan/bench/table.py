@@ -28,7 +28,7 @@ def update(page: Path, folder: Path) -> bool:
         page: Markdown with `<!-- measured: NAMES -->` and `<!-- end of measured -->`; the names,
             with commas, are of the tables that come between: buildings,
             methods, shapes, scale, sweeps, causes, difficulty, errors, flats, metric,
-            home, misplaced, runtime.
+            home, misplaced, layouts, runtime.
         folder: of the benchmark files.
 
     Returns:
@@ -79,6 +79,7 @@ def updated(text: str, folder: Path, page: Path) -> str:
         "home": _home,
         "metric": _metric,
         "misplaced": _misplaced,
+        "layouts": _layouts,
         "runtime": _runtime,
     }
 
@@ -225,6 +226,33 @@ def _misplaced(files: list[dict[str, Any]]) -> str:
     heads = ["tour", "trials", "all shifted cameras named", "more than one innocent named",
              "moved back", "cameras named with none shifted"]  # fmt: skip
     return f"One room's cameras of a photo tour shifted by 2.6 m.\n\n{table(heads, rows)}"
+
+
+def _layouts(files: list[dict[str, Any]]) -> str:
+    rows, doubts = [], []
+    for f in (data["figures"] for data in _of(files, "layouts")):
+        for name in ("all", "without_openings", "with_openings"):
+            part = f[name]
+            if part["panoramas"]:
+                rows.append(
+                    [
+                        f"{f['scene']}, {name.replace('_', ' ')}",
+                        str(part["panoramas"]),
+                        *(number(part["floor_px"][k], 1) for k in ("median", "mean")),
+                        *(number(part["iou_2d"][k], 3) for k in ("median", "mean")),
+                    ]
+                )
+        for part in f["sigma"]["bins"] if f["sigma"] else ():
+            shares = (number(part[f"within_{k}"], 2) for k in (1, 2))
+            doubts.append([f["scene"], number(part["from_ch"], 1), str(part["columns"]), *shares])
+    if not rows:
+        return ""
+    heads = ["panoramas", "count", "floor px, median", "mean", "2-D IoU, median", "mean"]
+    bins = ["scene", "wall from, camera heights", "columns", "within 1 σ", "within 2 σ"]
+    return (
+        "Mean |Δ| a panorama of the floor boundary in rows of 512, and IoU of the floors that it "
+        f"encloses.\n\n{table(heads, rows)}\nHow the stated σ holds.\n\n{table(bins, doubts)}"
+    )
 
 
 def _runtime(files: list[dict[str, Any]]) -> str:

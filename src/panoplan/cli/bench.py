@@ -22,22 +22,25 @@ def add_parser(commands: Any) -> None:
         "metric: whether the ± of metres holds. home: on a scene with known truth. misplaced: one "
         "room's cameras of a tour shifted, on simulated flats or on a scene. difficulty: a scene's "
         "real layouts against simulated ones. runtime: time and memory on a long walk. odometry: "
-        "on rendered walks. tour: joining a scene's photos. table: writes what they measured into "
-        "a page.",
+        "on rendered walks. tour: joining a scene's photos. layouts: a layout network on a folder "
+        "with images and true layouts. table: writes what they measured into a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
     parser.add_argument(
         "what",
         choices=[
             "v1", "accuracy", "metric", "home", "misplaced", "difficulty", "runtime", "odometry",
-            "tour", "table",
+            "tour", "layouts", "table",
         ],
     )  # fmt: skip
     parser.add_argument(
         "input",
         nargs="?",
         type=Path,
-        help="home, misplaced, difficulty, tour: the scene; odometry: walks; table: the page",
+        help="home, misplaced, difficulty, tour, layouts: scene; odometry: walks; table: page",
+    )
+    parser.add_argument(
+        "--model", type=Path, metavar="ONNX", help="layouts: network (default: the one shipped)"
     )
     parser.add_argument("--flats", type=int, default=20, metavar="N", help="seeds 0 to N-1 a grade")
     parser.add_argument("--trials", type=int, default=40, metavar="N", help="misplaced: how many")
@@ -70,6 +73,7 @@ def act(options: argparse.Namespace) -> int:
         accuracy,
         difficulty,
         home,
+        layouts,
         metric,
         misplaced,
         odometry,
@@ -79,11 +83,10 @@ def act(options: argparse.Namespace) -> int:
     )
     from panoplan.bench.record import record
     from panoplan.config import as_dict
+    from panoplan.layouts.onnx import SHIPPED, OnnxLayouts
 
-    if (
-        options.what in ("home", "difficulty", "odometry", "tour", "table")
-        and options.input is None
-    ):
+    asked = ("home", "difficulty", "odometry", "tour", "layouts", "table")
+    if options.what in asked and options.input is None:
         raise InputError(f"bench {options.what}", "no path", f"bench {options.what} PATH")
     if options.what == "table":
         changed = table.update(options.input, options.results)
@@ -107,6 +110,9 @@ def act(options: argparse.Namespace) -> int:
                 figures = misplaced.measure_flats(range(trials), config, report)
             else:
                 figures = misplaced.measure_home(options.input, config, trials, report)
+        elif options.what == "layouts":
+            network = OnnxLayouts(options.model or SHIPPED, threads=1)
+            figures = layouts.measure(options.input, network, report)
         elif options.what == "tour":
             figures = tour.measure(options.input, config, report)
         elif options.what == "odometry":

@@ -1,4 +1,4 @@
-"""panoplan model: layout networks of other people."""
+"""panoplan model: layout networks of other people, and training of our own."""
 
 from __future__ import annotations
 
@@ -6,19 +6,24 @@ import argparse
 from pathlib import Path
 from typing import Any
 
+from panoplan.cli import model_train
+
 
 def add_parser(commands: Any) -> None:
     """Adds the command."""
     parser = commands.add_parser(
         "model",
-        help="layout networks of other people",
+        help="layout networks: other people's, and training of our own",
         description="convert: a HorizonNet checkpoint (.pth) or an LGT-Net ONNX file becomes an "
-        "ONNX file that `panoplan run --model` takes. show: what such a file says about itself.",
+        "ONNX file that `panoplan run --model` takes. show: what such a file says about itself. "
+        "train: renders labelled panoramas of made-up homes into a folder, trains a network on "
+        "them and writes it; what is there already is gone on with.",
         epilog="example: panoplan model convert resnet50_rnn__zind.pth -o horizonnet.onnx",
     )
-    parser.add_argument("what", choices=["convert", "show"])
-    parser.add_argument("input", type=Path, help="checkpoint or ONNX file")
-    parser.add_argument("-o", "--output", type=Path, help="convert: ONNX file to write")
+    parser.add_argument("what", choices=["convert", "show", "train"])
+    parser.add_argument("input", type=Path, help="checkpoint or ONNX file; train: folder")
+    parser.add_argument("-o", "--output", type=Path, help="convert, train: ONNX file to write")
+    model_train.add_arguments(parser)
     parser.set_defaults(act=act)
 
 
@@ -26,6 +31,8 @@ def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     from panoplan.errors import InputError
 
+    if options.what == "train":
+        return model_train.act(options)
     if options.what == "show":
         from panoplan.layouts.onnx import OnnxLayouts
 

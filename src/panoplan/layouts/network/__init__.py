@@ -1,0 +1,1 @@
+"""Our own layout network: its data, its shape, its training."""

@@ -1,0 +1,150 @@
+"""Labelled panoramas for training: made-up homes, photographed from everywhere."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import shapely
+from numpy.typing import NDArray
+
+from panoplan.simulate.buildings import Building, make_corridor_building, make_flat
+from panoplan.simulate.families import make_building
+from panoplan.simulate.render.develop import develop, draw_development
+from panoplan.simulate.render.labels import Labeller, Labels
+from panoplan.simulate.render.scene import PREVIEW, Scene
+from panoplan.types.arrays import FloatArray
+from panoplan.types.layout import Layout
+
+WIDTH = 512
+TARGETS = ("floor", "through", "ceiling", "corner", "door", "opening", "window")
+"""Rows of a sample's targets: elevations in rad, then shares 0-1."""
+_CORNER_DECAY = 0.9
+_HEIGHT_M, _HEIGHT_SPREAD_M, _HEIGHT_RANGE_M = 1.5, 0.16, (1.05, 1.85)
+_IN_PASSAGE = 0.06
+
+
+@dataclass(frozen=True, eq=False)
+class Sample:
+    """A panorama and what a network should say of it.
+
+    Attributes:
+        image: (WIDTH / 2, WIDTH, 3) as a camera gives it.
+        targets: (len(TARGETS), WIDTH).
+    """
+
+    image: NDArray[np.uint8]
+    targets: NDArray[np.float32]
+
+
+def samples(seed: int, per_building: int = 24) -> Iterator[Sample]:
+    """Panoramas without end.
+
+    Args:
+        seed: the same seed gives the same ones.
+        per_building: how many of each home.
+
+    Yields:
+        A sample at a time.
+    """
+    root = np.random.SeedSequence(seed)
+    while True:
+        building_seed, scene_seed, camera_seed = root.spawn(3)
+        building = _building(np.random.default_rng(building_seed))
+        scene = Scene(building, scene_seed, PREVIEW)
+        labeller = Labeller(scene)
+        rng = np.random.default_rng(camera_seed)
+        for _ in range(per_building):
+            yield _sample(scene, labeller, rng)
+
+
+def targets(labels: Labels) -> NDArray[np.float32]:
+    """(len(TARGETS), W) what a network should say."""
+    closed = labels.closed
+    if closed.ceiling_boundary is None or closed.spans is None:
+        raise ValueError("labels of a panorama lack a ceiling or spans")
+    spans = closed.spans
+    rows = [
+        closed.floor_boundary,
+        labels.through.floor_boundary,
+        closed.ceiling_boundary,
+        _corner_share(closed),
+        *(_covered(s, closed.width) for s in (spans.doors, spans.openings, spans.windows)),
+    ]
+    return np.array(rows, dtype=np.float32)
+
+
+def _building(rng: np.random.Generator) -> Building:
+    seed, kind = int(rng.integers(2**31)), rng.random()
+    if kind < 0.05:
+        return make_corridor_building(int(rng.integers(3, 9)), seed, opening_share=0.3)
+    if kind < 0.55:
+        return make_building("flat", seed)
+    opening_share = float(rng.choice([0.05, 0.3, 0.7]))
+    return make_flat(seed, opening_share=opening_share, extra_doors=float(rng.uniform(0, 0.5)))
+
+
+def _sample(scene: Scene, labeller: Labeller, rng: np.random.Generator) -> Sample:
+    position = _position(scene, rng)
+    heading = float(rng.uniform(-np.pi, np.pi))
+    height = float(np.clip(rng.normal(_HEIGHT_M, _HEIGHT_SPREAD_M), *_HEIGHT_RANGE_M))
+    tilt = _tilt(rng)
+    turn = _turned(heading)
+    pixels = scene.panorama(np.array([position[0], -height, position[1]]), turn @ tilt, WIDTH)
+    labels = labeller.labels(position, heading, height, width=WIDTH, level_from_cam=tilt)
+    image = develop(pixels.radiance, draw_development(rng), rng)
+    return Sample(image, targets(labels))
+
+
+def _position(scene: Scene, rng: np.random.Generator) -> FloatArray:
+    """Somewhere on free floor, now and then in a doorway; larger rooms more often."""
+    building = scene.building
+    if building.passages and rng.random() < _IN_PASSAGE:
+        faces = building.passages[int(rng.integers(len(building.passages)))].faces
+        along, across = rng.uniform(0.35, 0.65), rng.uniform(0.05, 0.95)
+        near, far = (f[0] + along * (f[1] - f[0]) for f in faces)
+        return np.asarray(near + across * (far - near))
+    share = np.sqrt([room.area for room in building.rooms])
+    while True:
+        polygon = building.rooms[int(rng.choice(len(share), p=share / share.sum()))].polygon
+        area = shapely.Polygon(polygon)
+        clearance = float(rng.uniform(0.2, 0.7))
+        for _ in range(8):
+            position = rng.uniform(polygon.min(axis=0), polygon.max(axis=0))
+            point = shapely.Point(position)
+            inside = area.contains(point) and area.exterior.distance(point) > clearance
+            if inside and scene.stands_free(position, 0.12):
+                return position
+
+
+def _tilt(rng: np.random.Generator) -> FloatArray:
+    """A tripod stands straight, or nearly; a hand does not."""
+    pitch, roll = np.deg2rad(rng.normal(0, 0.2 if rng.random() < 0.6 else 1.2, 2))
+    c, s, d, t = np.cos(pitch), np.sin(pitch), np.cos(roll), np.sin(roll)
+    about_x = np.array([[1, 0, 0], [0, c, -s], [0, s, c]])
+    about_z = np.array([[d, -t, 0], [t, d, 0], [0, 0, 1]])
+    return np.asarray(about_x @ about_z)
+
+
+def _turned(heading: float) -> FloatArray:
+    c, s = np.cos(heading), np.sin(heading)
+    return np.array([[c, 0, s], [0, 1, 0], [-s, 0, c]])
+
+
+def _corner_share(layout: Layout) -> FloatArray:
+    """(W,) 1 at a corner, less with every column beside it."""
+    width = layout.width
+    if layout.corners is None or len(layout.corners) == 0:
+        return np.zeros(width)
+    off = np.abs(np.arange(width)[:, None] - layout.corners[None])
+    return np.asarray(_CORNER_DECAY ** np.minimum(off, width - off).min(axis=1))
+
+
+def _covered(spans: FloatArray, width: int) -> FloatArray:
+    """(W,) 1 in the columns of the spans."""
+    out = np.zeros(width)
+    for first, last in np.rint(spans).astype(int):
+        count = (last - first) % width + 1
+        out[np.arange(first, first + count) % width] = 1
+    return out

@@ -1,0 +1,135 @@
+"""The layout network: folding, turning, likelihood, training, export."""
+
+import copy
+import json
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="the extra train is not installed")
+
+from panoplan.layouts.network import train as training  # noqa: E402
+from panoplan.layouts.network.data import batches  # noqa: E402
+from panoplan.layouts.network.export import export  # noqa: E402
+from panoplan.layouts.network.head import OUTPUTS, Head, LayoutNetwork  # noqa: E402
+from panoplan.layouts.network.samples import TARGETS  # noqa: E402
+from panoplan.layouts.network.shards import HELD_OUT_SEED  # noqa: E402
+from panoplan.layouts.network.trunk import CHANNELS, Trunk, _Conv, _fold  # noqa: E402
+from panoplan.layouts.onnx import OnnxLayouts  # noqa: E402
+
+_COUNT = 8
+
+
+@pytest.fixture(scope="module")
+def network():
+    torch.manual_seed(0)
+    torch.set_num_threads(1)
+    made = LayoutNetwork(Trunk(), Head())
+    for parameter in made.parameters():
+        if parameter.ndim > 1:
+            torch.nn.init.kaiming_normal_(parameter, nonlinearity="linear")
+    return made.eval()
+
+
+def _folder(path, *, noise):
+    """Two shards of made-up features; where they are informative, they tell the floor."""
+    rng = np.random.default_rng(0)
+    for number in (0, HELD_OUT_SEED):
+        rows = np.zeros((_COUNT, len(TARGETS), 512), dtype=np.float32)
+        level = rng.uniform(-1, -0.3, (_COUNT, 1))
+        rows[:, 0], rows[:, 1], rows[:, 2] = level, level, -level
+        np.save(path / f"targets-{number:07d}.npy", rows)
+        for part, channels, size in zip(
+            ("shallow", "middle", "deep"), CHANNELS, (32, 16, 8), strict=True
+        ):
+            values = np.repeat(level[:, :, None, None], channels, axis=1)
+            values = values + noise * rng.normal(size=(_COUNT, channels, size, 2 * size))
+            np.save(path / f"{part}-{number:07d}.npy", values.astype(np.float16))
+    return path
+
+
+def test_a_folded_normalisation_is_the_normalisation():
+    torch.manual_seed(1)
+    conv = torch.nn.Conv2d(8, 16, 1, bias=False)
+    norm = torch.nn.BatchNorm2d(16, eps=1e-3).eval()
+    for value in (norm.weight, norm.running_var):
+        torch.nn.init.uniform_(value, 0.5, 2)
+    torch.nn.init.normal_(norm.running_mean)
+    torch.nn.init.normal_(norm.bias)
+    weights = {"c.weight": conv.weight, **{f"n.{k}": v for k, v in norm.state_dict().items()}}
+    folded = _Conv(8, 16, 1, 1, depthwise=False, active=False)
+    _fold(folded, weights, "c", "n")
+    x = torch.randn(2, 8, 5, 7)
+    torch.testing.assert_close(folded(x), norm(conv(x)), rtol=1e-4, atol=1e-5)
+
+
+@torch.no_grad()
+def test_turning_the_panorama_turns_the_answer(network):
+    image = torch.randn(1, 3, 256, 512)
+    answer, turned = network(image), network(torch.roll(image, 96, dims=-1))
+    assert answer.shape == (1, len(OUTPUTS), 512)
+    assert answer.std(dim=-1).min() > 0
+    torch.testing.assert_close(torch.roll(answer, 96, dims=-1), turned, rtol=1e-3, atol=1e-3)
+
+
+def test_likelihood_by_hand():
+    answer = torch.zeros(1, len(OUTPUTS), 4)
+    answer[:, 3:6] = float(np.log(0.1))
+    targets = torch.zeros(1, len(TARGETS), 4)
+    targets[:, 0] = 0.05
+    # Laplace: |Δ|/b + ln b with weights 1, ½, ½; four even coins at a weight of 0.15.
+    expected = 0.05 / 0.1 + 2 * np.log(0.1) + 0.15 * 4 * np.log(2)
+    assert training.loss_of(answer, targets).item() == pytest.approx(expected, rel=1e-5)
+
+
+def test_batches_turn_features_and_targets_alike(tmp_path):
+    folder = _folder(tmp_path, noise=0.0)
+    rows = np.zeros((_COUNT, len(TARGETS), 512), dtype=np.float32)
+    rows[:, :, 64:96] = 1
+    np.save(folder / "targets-0000000.npy", rows)
+    shallow = np.zeros((_COUNT, 40, 32, 64), dtype=np.float16)
+    shallow[..., 8:12] = 1
+    np.save(folder / "shallow-0000000.npy", shallow)
+    turns = set()
+    for seed in range(6):
+        for features, _, _, targets in batches(folder, [0], 8, np.random.default_rng(seed)):
+            wide = features[0, 0, 0].repeat_interleave(8)
+            torch.testing.assert_close(wide, targets[0, 0])
+            turns.add(int(targets[0, 0].argmax()))
+    assert len(turns) > 3
+
+
+@pytest.mark.parametrize("trunk_rate", [0.0, 1e-3])
+def test_training_learns_and_goes_on(tmp_path, monkeypatch, network, trunk_rate):
+    folder = _folder(tmp_path, noise=0.05)
+    monkeypatch.setattr(training, "pretrained", lambda: copy.deepcopy(network.trunk))
+    monkeypatch.setattr(training, "_WARM_UP", 1)
+    out, told = tmp_path / "run", []
+    for steps in (1, 5):
+        plan = training.Plan(60, steps=steps, batch=8, trunk_rate=trunk_rate, average=0.2)
+        training.train(folder, out, plan, told.append)
+    first, second = (json.loads(line)["loss"] for line in told)
+    assert second < first - 0.05
+    kept = training.load(out / training.CHECKPOINT)
+    moved = not training._same(kept.trunk, network.trunk)
+    assert moved == (trunk_rate > 0)
+
+
+def test_the_exported_file_says_the_same_and_what_it_is(tmp_path, network):
+    path = tmp_path / "layout.onnx"
+    export(network, path, sigma_factor=2.0)
+    assert path.stat().st_size < 20e6
+    shipped = OnnxLayouts(path, threads=1)
+    assert (shipped.spec.height, shipped.spec.width) == (256, 512)
+    pixels = np.random.default_rng(0).integers(0, 256, (256, 512, 3), dtype=np.uint8)
+    told = shipped(pixels)
+    image = torch.from_numpy((pixels.astype(np.float32) - 127) / 128).permute(2, 0, 1)[None]
+    with torch.no_grad():
+        answer = network(image)[0].numpy()
+    # An untrained network also says what no elevation can be; that is told as unknown.
+    known = np.abs(answer[0]) < 1.5
+    assert known.mean() > 0.2
+    spread = answer[0].std()
+    np.testing.assert_allclose(told.floor[known], answer[0][known], atol=0.05 * spread)
+    sigma = 2 * np.sqrt(2) * np.exp(answer[3])
+    np.testing.assert_allclose(told.sigma[known], sigma[known], rtol=0.3, atol=1e-3)

@@ -1,0 +1,58 @@
+"""Labelled panoramas for training, and their shards."""
+
+from itertools import islice
+
+import numpy as np
+import pytest
+
+from panoplan.layouts.network import shards
+from panoplan.layouts.network.samples import TARGETS, WIDTH, samples, targets
+from panoplan.simulate.render.labels import Labels
+from panoplan.types.layout import Layout, Spans
+
+
+def test_samples_are_repeated_by_the_seed_and_are_plausible():
+    first, again = (list(islice(samples(3, 2), 3)) for _ in range(2))
+    for one, two in zip(first, again, strict=True):
+        np.testing.assert_array_equal(one.image, two.image)
+        np.testing.assert_array_equal(one.targets, two.targets)
+        assert one.image.shape == (WIDTH // 2, WIDTH, 3)
+        assert one.image.std() > 5
+        floor, through, ceiling = one.targets[:3]
+        assert np.isfinite(one.targets).all()
+        assert (floor < 0).all()
+        assert (ceiling > 0).all()
+        # What is seen through a door lies no nearer than the door.
+        assert (through >= floor - 1e-4).mean() > 0.99
+    assert not np.array_equal(first[0].image, first[1].image)
+
+
+def test_targets_of_a_layout_by_hand():
+    spans = Spans(np.array([[10.0, 12.0]]), np.array([[510.0, 1.0]]), np.empty((0, 2)))
+    floor, through = np.full(WIDTH, -0.6), np.full(WIDTH, -0.4)
+    closed = Layout(floor, np.full(WIDTH, 0.5), np.array([0.0, 100.0]), spans=spans)
+    rows = dict(zip(TARGETS, targets(Labels(closed, Layout(through))), strict=True))
+    np.testing.assert_allclose([rows[k][7] for k in TARGETS[:3]], [-0.6, -0.4, 0.5], rtol=1e-6)
+    assert list(np.flatnonzero(rows["door"])) == [10, 11, 12]
+    assert list(np.flatnonzero(rows["opening"])) == [0, 1, 510, 511]
+    assert rows["window"].max() == 0
+    assert rows["corner"][100] == 1
+    assert rows["corner"][101] == rows["corner"][99] == pytest.approx(0.9)
+    assert rows["corner"][511] == pytest.approx(0.9)
+
+
+def test_a_shard_is_rendered_once_and_whole(tmp_path, monkeypatch):
+    monkeypatch.setattr(shards, "SHARD", 2)
+    monkeypatch.setattr(shards, "samples", lambda seed: samples(seed, 2))
+    told = []
+    shards.render_shard(tmp_path, 5, told.append)
+    assert told == [1, 2]
+    images = np.load(tmp_path / "images-0000005.npy")
+    assert images.shape == (2, WIDTH // 2, WIDTH, 3)
+    shards.render_shard(tmp_path, 5, told.append)
+    assert told == [1, 2]
+    assert shards.shards(tmp_path, held_out=False) == [5]
+    assert shards.shards(tmp_path, held_out=True) == []
+    (tmp_path / f"targets-{shards.HELD_OUT_SEED:07d}.npy").touch()
+    assert shards.shards(tmp_path, held_out=True) == [shards.HELD_OUT_SEED]
+    assert shards.shards(tmp_path, held_out=False) == [5]
