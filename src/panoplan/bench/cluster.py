@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any
 
@@ -32,7 +33,9 @@ def on_ray(address: str) -> Workers:
     except ImportError:
         raise MissingExtraError("work on a cluster", "ray", "ray") from None
     try:
-        ray.init(address, ignore_reinit_error=True, log_to_driver=False, logging_level="error")
+        ray.init(
+            address, ignore_reinit_error=True, log_to_driver=False, logging_level=logging.ERROR
+        )
     except (ConnectionError, ValueError, RuntimeError) as error:
         raise InputError("--ray", f"no cluster at {address} ({error})", "its address") from None
 
