@@ -31,6 +31,8 @@ class Joinery:
         door_m: least and largest width of a door.
         double_share: probability that a door is a double one.
         widest_opening_m: of the openings.
+        whole_walls: probability that an opening no wider than that leaves nothing of the wall
+            that both rooms share, neither jamb nor stub.
     """
 
     openings: float
@@ -38,6 +40,7 @@ class Joinery:
     door_m: tuple[float, float]
     double_share: float
     widest_opening_m: float
+    whole_walls: float = 0.0
 
 
 def join(
@@ -104,6 +107,9 @@ def _passage(
     wants_opening, wants_double = rng.random() < opening_share, rng.random() < how.double_share
     width = float(rng.uniform(*how.door_m))
     kind: PassageKind = "door"
+    whole = wants_opening and how.whole_walls > 0 and rng.random() < how.whole_walls
+    if whole and 1.2 <= wall.length <= how.widest_opening_m:
+        return Passage("opening", wall.rooms, wall.faces(0.0, wall.length))
     if wants_opening and room >= 1.2:
         most = min(how.widest_opening_m, room)
         kind, width = "opening", float(rng.uniform(max(1.2, _NARROW_OPENING * most), most))

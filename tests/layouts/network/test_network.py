@@ -77,9 +77,17 @@ def test_likelihood_by_hand():
     answer[:, 3:6] = float(np.log(0.1))
     targets = torch.zeros(1, len(TARGETS), 4)
     targets[:, 0] = 0.05
-    # Laplace: |Δ|/b + ln b with weights 1, ½, ½; four even coins at a weight of 0.15.
-    expected = 0.05 / 0.1 + 2 * np.log(0.1) + 0.15 * 4 * np.log(2)
+    # Laplace: |Δ|/b + ln b with weights 1, ½, ½; four even coins at a weight of 8.
+    expected = 0.05 / 0.1 + 2 * np.log(0.1) + 8 * 4 * np.log(2)
     assert training.loss_of(answer, targets).item() == pytest.approx(expected, rel=1e-5)
+    # Half of the columns at a scale four times as large count twice as much as the others.
+    answer[:, 3:6, :2] = float(np.log(0.4))
+    wide, narrow = 0.05 / 0.4 + np.log(0.4), 0.05 / 0.1 + np.log(0.1)
+    floor = (2 * wide + narrow) / 3
+    others = (2 * np.log(0.4) + np.log(0.1)) / 3
+    assert training.loss_of(answer, targets).item() == pytest.approx(
+        floor + others + 8 * 4 * np.log(2), rel=1e-5
+    )
 
 
 def test_batches_turn_features_and_targets_alike(tmp_path):
@@ -111,6 +119,7 @@ def test_training_learns_and_goes_on(tmp_path, monkeypatch, network, trunk_rate)
     first, second = (json.loads(line)["loss"] for line in told)
     assert second < first - 0.05
     kept = training.load(out / training.CHECKPOINT)
+    assert {"door_f1", "opening_f1", "window_f1"} <= json.loads(told[-1]).keys()
     moved = not training._same(kept.trunk, network.trunk)
     assert moved == (trunk_rate > 0)
 

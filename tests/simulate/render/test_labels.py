@@ -44,6 +44,17 @@ def test_nothing_is_seen_through_a_shut_door():
         assert same == is_shut
 
 
+@pytest.mark.parametrize("room", [0, 1])
+def test_the_room_that_is_asked_for_is_told_from_its_doorway(room):
+    """The camera on the threshold at x = 4.1 looks along z; rooms of 4 m and 3 m on its sides."""
+    scene = Scene(two_rooms("opening"), 1, furnished=0.0)
+    labels = Labeller(scene).labels(np.array([4.1, 1.5]), 0.0, 1.5, width=WIDTH, room=room)
+    sides = 1.5 / np.tan(-labels.closed.floor_boundary[[WIDTH // 4, 3 * WIDTH // 4]])
+    # Left is the room before the wall, right the one behind; the other's side ends at the wall.
+    expected = [4.1, 0.1] if room == 0 else [0.1, 3.1]
+    np.testing.assert_allclose(sides, expected, rtol=0.01)
+
+
 def test_doors_that_lead_nowhere_are_told():
     found = 0
     for seed in range(6):

@@ -6,11 +6,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
-import shapely
 from numpy.typing import NDArray
 
-from panoplan.simulate.buildings import Building, make_corridor_building, make_flat
-from panoplan.simulate.families import make_building
+from panoplan.layouts.network.homes import draw_home
+from panoplan.layouts.network.stands import draw_stand
 from panoplan.simulate.render.develop import develop, draw_development
 from panoplan.simulate.render.labels import Labeller, Labels
 from panoplan.simulate.render.scene import PREVIEW, Scene
@@ -22,7 +21,6 @@ TARGETS = ("floor", "through", "ceiling", "corner", "door", "opening", "window")
 """Rows of a sample's targets: elevations in rad, then shares 0-1."""
 _CORNER_DECAY = 0.9
 _HEIGHT_M, _HEIGHT_SPREAD_M, _HEIGHT_RANGE_M = 1.5, 0.16, (1.05, 1.85)
-_IN_PASSAGE = 0.06
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +49,7 @@ def samples(seed: int, per_building: int = 24) -> Iterator[Sample]:
     root = np.random.SeedSequence(seed)
     while True:
         building_seed, scene_seed, camera_seed = root.spawn(3)
-        building = _building(np.random.default_rng(building_seed))
+        building = draw_home(np.random.default_rng(building_seed))
         scene = Scene(building, scene_seed, PREVIEW)
         labeller = Labeller(scene)
         rng = np.random.default_rng(camera_seed)
@@ -75,47 +73,16 @@ def targets(labels: Labels) -> NDArray[np.float32]:
     return np.array(rows, dtype=np.float32)
 
 
-def _building(rng: np.random.Generator) -> Building:
-    seed, kind = int(rng.integers(2**31)), rng.random()
-    if kind < 0.05:
-        return make_corridor_building(int(rng.integers(3, 9)), seed, opening_share=0.3)
-    if kind < 0.55:
-        return make_building("flat", seed)
-    opening_share = float(rng.choice([0.05, 0.3, 0.7]))
-    return make_flat(seed, opening_share=opening_share, extra_doors=float(rng.uniform(0, 0.5)))
-
-
 def _sample(scene: Scene, labeller: Labeller, rng: np.random.Generator) -> Sample:
-    position = _position(scene, rng)
+    position, room = draw_stand(scene, rng)
     heading = float(rng.uniform(-np.pi, np.pi))
     height = float(np.clip(rng.normal(_HEIGHT_M, _HEIGHT_SPREAD_M), *_HEIGHT_RANGE_M))
     tilt = _tilt(rng)
     turn = _turned(heading)
     pixels = scene.panorama(np.array([position[0], -height, position[1]]), turn @ tilt, WIDTH)
-    labels = labeller.labels(position, heading, height, width=WIDTH, level_from_cam=tilt)
+    labels = labeller.labels(position, heading, height, width=WIDTH, level_from_cam=tilt, room=room)
     image = develop(pixels.radiance, draw_development(rng), rng)
     return Sample(image, targets(labels))
-
-
-def _position(scene: Scene, rng: np.random.Generator) -> FloatArray:
-    """Somewhere on free floor, now and then in a doorway; larger rooms more often."""
-    building = scene.building
-    if building.passages and rng.random() < _IN_PASSAGE:
-        faces = building.passages[int(rng.integers(len(building.passages)))].faces
-        along, across = rng.uniform(0.35, 0.65), rng.uniform(0.05, 0.95)
-        near, far = (f[0] + along * (f[1] - f[0]) for f in faces)
-        return np.asarray(near + across * (far - near))
-    share = np.sqrt([room.area for room in building.rooms])
-    while True:
-        polygon = building.rooms[int(rng.choice(len(share), p=share / share.sum()))].polygon
-        area = shapely.Polygon(polygon)
-        clearance = float(rng.uniform(0.2, 0.7))
-        for _ in range(8):
-            position = rng.uniform(polygon.min(axis=0), polygon.max(axis=0))
-            point = shapely.Point(position)
-            inside = area.contains(point) and area.exterior.distance(point) > clearance
-            if inside and scene.stands_free(position, 0.12):
-                return position
 
 
 def _tilt(rng: np.random.Generator) -> FloatArray:

@@ -50,6 +50,7 @@ class Labeller:
         *,
         width: int = 1024,
         level_from_cam: FloatArray | None = None,
+        room: int | None = None,
     ) -> Labels:
         """The truth of one panorama.
 
@@ -59,12 +60,14 @@ class Labeller:
             camera_height_m: above the floor.
             width: number of columns.
             level_from_cam: (3, 3) the camera's tilt; level where None.
+            room: whose boundary is told; where None, of the room the camera stands in, in a
+                doorway of the one it looks into.
 
         Raises:
             InputError: the camera stands in no room and no passage.
         """
         building = self._scene.building
-        view = self._caster.view(position, heading, camera_height_m, width=width)
+        view = self._caster.view(position, heading, camera_height_m, width=width, room=room)
         leaks = {
             k: _FAR_M for k, _ in building.neighbours(view.room) if k not in self._scene.shell.shut
         }

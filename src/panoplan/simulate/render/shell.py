@@ -13,6 +13,7 @@ from panoplan.simulate.render.mesh import UP, MeshBuilder, Rectangle
 from panoplan.types.arrays import FloatArray
 
 _LEAF_THICK_M = 0.04
+_WIDE_M = 2.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,7 +113,9 @@ def _passage_height(building: Building, passage: Passage, rng: np.random.Generat
     ceiling = min(building.rooms[k].ceiling_height_m for k in passage.rooms)
     if passage.kind == "door":
         return min(float(rng.uniform(1.95, 2.12)), ceiling - 0.05)
-    return ceiling if rng.random() < 0.35 else min(float(rng.uniform(2.0, 2.5)), ceiling - 0.05)
+    # What is wide has seldom a lintel far below the ceiling.
+    flush = 0.35 if passage.width < _WIDE_M else 0.6
+    return ceiling if rng.random() < flush else min(float(rng.uniform(2.0, 2.5)), ceiling - 0.05)
 
 
 def _window_heights(building: Building, room: int, rng: np.random.Generator) -> tuple[float, float]:
