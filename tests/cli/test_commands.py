@@ -103,6 +103,10 @@ def test_simulate_writes_whole_mp3d_fpe_scenes(tmp_path, capsys):
     assert points[:, 1].max() == pytest.approx(made.camera_height_m, abs=0.1)
     floor = shapely.union_all([room.floor for room in made.building.rooms]).buffer(0.3)
     assert shapely.contains_xy(floor, points[::500, [0, 2]]).mean() > 0.99
+    up = made.camera_height_m - points[:, 1]
+    amid = shapely.union_all([room.floor.buffer(-0.15) for room in made.building.rooms])
+    furniture = shapely.contains_xy(amid, points[:, [0, 2]]) & (up > 0.2) & (up < 1.9)
+    assert furniture.sum() > 1000
 
 
 @pytest.mark.parametrize(

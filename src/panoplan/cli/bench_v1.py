@@ -115,11 +115,13 @@ def _study(options: argparse.Namespace, name: str) -> None:
     from panoplan.bench.v1.run import write_figures
     from panoplan.bench.v1.store import Store
     from panoplan.bench.v1.studies import STUDIES
+    from panoplan.bench.v1.study import Runner
 
     study, workers = STUDIES[name], _workers(options)
     for family, own in _simulated(options, study.seeds).items():
         with progress(f"{name}, {family}", quiet=options.quiet) as report:
-            figures = study.measure(own, Store(options.output), workers, report)
+            runner = Runner(Store(options.output), workers, report)
+            figures = study.measure(own, runner)
         print(write_figures(f"v1-{name}", study.row.settings, family, figures, options.output))
 
 

@@ -147,16 +147,17 @@ def _write_mp3d_fpe(scene: SimulatedScene, folder: Path, seed: int) -> None:
     """Writes a scene with its cloud; keyframes of a video have the numbers of their frames."""
     import numpy as np
 
-    from panoplan.bench.points.scan import scanned
     from panoplan.formats.mp3d_fpe import write_mp3d_fpe
     from panoplan.formats.ply import write_ply_points
+    from panoplan.simulate.scan import scanned
 
     numbered = [
         replace(k, id=str(n + 1 if scene.frames is None else int(k.id)))
         for n, k in enumerate(scene.keyframes)
     ]
     write_mp3d_fpe(folder, numbered, scene.truth, scene.frames)
-    points = scanned(scene.building, scene.camera_height_m, seed)
+    walked = (scene.frames or scene.truth.trajectory or scene.odometry).translations
+    points = scanned(scene.building, scene.camera_height_m, seed, walked=walked)
     # The higher the lighter: there is no texture to take colours from.
     low, high = points[:, 1].max(), points[:, 1].min()
     shade = 60 + 180 * (low - points[:, 1]) / max(low - high, 1e-9)

@@ -10,11 +10,11 @@ from panoplan.bench.points.baseline import (
     wall_directions,
 )
 from panoplan.bench.points.maps import maps
-from panoplan.bench.points.scan import scanned
 from panoplan.bench.points.segmentation import segmented
 from panoplan.errors import InputError
 from panoplan.metrics.rooms import iou, region
 from panoplan.simulate.buildings import make_flat
+from panoplan.simulate.scan import scanned
 
 L_ROOM = np.array([[0, 0], [6, 0], [6, 3], [3, 3], [3, 5], [0, 5]], dtype=float)
 SQUARE = np.array([[-2, 0], [-0.2, 0], [-0.2, 5], [-2, 5]], dtype=float)
@@ -83,17 +83,6 @@ def test_a_simulated_building_is_found_from_its_scan():
     best = [max(iou(room, other) for other in ours) for room in true]
     assert sorted(best)[1] > 0.7
     assert len(plan.rooms) <= 7
-
-
-def test_a_scan_has_gaps_where_doors_are():
-    building = make_flat(3, rooms=5, opening_share=0.0)
-    points = scanned(building, 1.5, 0)
-    door = building.doors[0].faces[0].mean(axis=0)
-    near = points[np.hypot(*(points[:, [0, 2]] - door).T) < 0.2]
-    up = 1.5 - near[:, 1]
-    assert not np.any((up > 0.2) & (up < 1.9))
-    assert np.any(up > 2.0)
-    assert np.any(up < 0.1)
 
 
 @pytest.mark.parametrize(

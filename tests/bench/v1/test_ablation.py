@@ -2,15 +2,11 @@
 
 import numpy as np
 import pytest
-from tests.bench.v1.small import Small
+from tests.bench.v1.small import Small, runner
 
-from panoplan.bench.parallel import processes
 from panoplan.bench.v1 import ablation
 from panoplan.bench.v1.ablation import KNOWN, Ablated, ablated
 from panoplan.bench.v1.predict import Row
-from panoplan.bench.v1.store import Store
-
-HERE = processes(1)
 
 
 @pytest.fixture(scope="module")
@@ -70,14 +66,14 @@ def test_every_piece_of_knowledge_is_measured_and_kept(source, tmp_path, monkeyp
     row = Row("default", 0.3)
     monkeypatch.setattr(ablation, "KNOWN", ("nothing", "grouping"))
     told = []
-    figures = ablated([source], row, Store(tmp_path), HERE, lambda *now: told.append(now))
+    figures = ablated([source], runner(tmp_path, lambda *now: told.append(now)), row)
     assert told == [(1, 2, "ablation"), (2, 2, "ablation")]
     grouped = figures["known"]["grouping"]
     assert grouped["summary"]["scenes"] == 1
     # One room a true room that holds a view, but for closets that are seen from a doorway.
     assert grouped["scenes"][0]["failure"] is None
     assert grouped["scenes"][0]["aligned"]["rooms_30"][0] >= 3
-    again = ablated([source], row, Store(tmp_path), HERE, lambda *_: pytest.fail("made again"))
+    again = ablated([source], runner(tmp_path, lambda *_: pytest.fail("made again")), row)
     assert again == figures
 
 

@@ -4,9 +4,8 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from tests.bench.v1.small import Small
+from tests.bench.v1.small import Small, runner
 
-from panoplan.bench.parallel import processes
 from panoplan.bench.v1 import scale
 from panoplan.bench.v1.ispa import PATHS, Shaped, shaped
 from panoplan.bench.v1.pictures import chosen, f_score, write_pictures
@@ -19,8 +18,6 @@ from panoplan.bench.v1.tables import shapes, sweeps
 from panoplan.metrics.alignment import align
 from panoplan.simulate.noise import REAL
 
-HERE = processes(1)
-
 
 @pytest.fixture(scope="module")
 def source():
@@ -30,8 +27,7 @@ def source():
 @pytest.fixture(scope="module")
 def by_path(source, tmp_path_factory):
     """Figures of Table III of one small flat."""
-    store = Store(tmp_path_factory.mktemp("ispa"))
-    return shaped([source], store, HERE, lambda *_: None)
+    return shaped([source], runner(tmp_path_factory.mktemp("ispa")))
 
 
 def _file(benchmark, figures, preset="paper"):
@@ -67,7 +63,7 @@ def test_the_key_of_a_shape_is_of_the_scene(source):
 
 def test_the_error_of_the_scale_by_layouts(source, tmp_path, monkeypatch):
     monkeypatch.setattr(scale, "LAYOUTS", (5, 20, 500))
-    figures = scaled([source], Store(tmp_path), HERE, lambda *_: None)
+    figures = scaled([source], runner(tmp_path))
     few, more, none = figures["methods"]["default"]["layouts"]
     assert (few["walks"], more["walks"], none["walks"]) == (1, 1, 0)
     assert more["median"] < 8

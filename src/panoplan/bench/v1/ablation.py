@@ -11,16 +11,14 @@ from unittest.mock import patch
 import numpy as np
 import shapely
 
-from panoplan.bench.parallel import Workers
 from panoplan.bench.v1.predict import METHOD_CODE, Row, made_of
 from panoplan.bench.v1.scenes import Recording, Simulated, code_version, digest, recorded
 from panoplan.bench.v1.score import score, summary
-from panoplan.bench.v1.store import KeptScene, Store
-from panoplan.bench.v1.study import studied
+from panoplan.bench.v1.store import KeptScene
+from panoplan.bench.v1.study import Runner
 from panoplan.config import Config
 from panoplan.estimator import settle
 from panoplan.metrics.rooms import region
-from panoplan.pipeline import Progress
 from panoplan.simulate.noise import EXACT, REAL
 from panoplan.stages.plan.floorplan import PlannedRoom, plan_rooms
 from panoplan.types.arrays import IntArray
@@ -67,27 +65,19 @@ class Ablated:
         return {"scene": self.source.name, "known": self.known, **scores}
 
 
-def ablated(
-    sources: Sequence[Simulated], row: Row, store: Store, workers: Workers, progress: Progress
-) -> dict[str, Any]:
+def ablated(sources: Sequence[Simulated], runner: Runner, row: Row) -> dict[str, Any]:
     """Measures what is gained by knowing each thing.
 
     Args:
         sources: scenes of one family.
+        runner: does the work.
         row: method.
-        store: what is kept.
-        workers: do the work.
-        progress: as of `studied`.
 
     Returns:
         For each of `KNOWN` the summary and each scene's scores.
     """
-    work = [Ablated(source, row, known) for known in KNOWN for source in sources]
-    made = studied(work, store, workers, progress)
-    known = {}
-    for name in KNOWN:
-        scenes = [scores for scores in made if scores["known"] == name]
-        known[name] = {"summary": summary(scenes), "scenes": scenes}
+    made = runner.by_case(KNOWN, sources, lambda source, known: Ablated(source, row, known))
+    known = {name: {"summary": summary(scenes), "scenes": scenes} for name, scenes in made}
     return {"share": row.share, "known": known}
 
 

@@ -7,18 +7,16 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from panoplan.bench.parallel import Workers
 from panoplan.bench.v1.predict import METHOD_CODE, Prediction, Row
 from panoplan.bench.v1.scenes import Simulated, code_version, digest
 from panoplan.bench.v1.score import score, summary
-from panoplan.bench.v1.store import KeptScene, Store
-from panoplan.bench.v1.study import studied
+from panoplan.bench.v1.store import KeptScene
+from panoplan.bench.v1.study import Runner
 from panoplan.config import Config, override
 from panoplan.estimator.assemble import assemble
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import State, Walk
 from panoplan.estimator.step import evidence_of
-from panoplan.pipeline import Progress
 from panoplan.stages.shape.ispa import room_shape
 
 ROW = Row("paper", 0.2)
@@ -100,21 +98,17 @@ def _shaped(state: State, config: Config) -> tuple[State, float]:
     return replace(state, rooms=tuple(rooms)), seconds
 
 
-def shaped(
-    sources: Sequence[Simulated], store: Store, workers: Workers, progress: Progress
-) -> dict[str, Any]:
+def shaped(sources: Sequence[Simulated], runner: Runner) -> dict[str, Any]:
     """Measures Table III.
 
     Args:
         sources: scenes of one family.
-        store: what is kept.
-        workers: do the work.
-        progress: as of `studied`.
+        runner: does the work.
 
     Returns:
         For each of `PATHS`, by name, the summary and each scene's scores.
     """
-    made = studied([Shaped(source) for source in sources], store, workers, progress)
+    made = runner.results([Shaped(source) for source in sources])
     figures = {}
     for path in PATHS:
         scenes = [scores[path.name] for scores in made]

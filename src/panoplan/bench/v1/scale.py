@@ -8,14 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from panoplan.bench.parallel import Workers
 from panoplan.bench.v1.predict import METHOD_CODE
 from panoplan.bench.v1.scenes import Simulated, code_version, digest
-from panoplan.bench.v1.store import Store
-from panoplan.bench.v1.study import studied
+from panoplan.bench.v1.study import Runner
 from panoplan.config import preset
 from panoplan.geometry.rigid import heading_of, turn
-from panoplan.pipeline import Progress
 from panoplan.stages.registration import cast
 from panoplan.stages.scale import recover_scale
 
@@ -60,27 +57,22 @@ class Scaled:
         return {"scene": self.source.name, "method": self.method, "errors": errors}
 
 
-def scaled(
-    sources: Sequence[Simulated], store: Store, workers: Workers, progress: Progress
-) -> dict[str, Any]:
+def scaled(sources: Sequence[Simulated], runner: Runner) -> dict[str, Any]:
     """Measures the error of the scale.
 
     Args:
         sources: scenes of one family.
-        store: what is kept.
-        workers: do the work.
-        progress: as of `studied`.
+        runner: does the work.
 
     Returns:
         For each method and number of layouts the median and the 90th percentile of the absolute
         error in per cent and how many walks are so long; and each scene's errors.
     """
-    work = [Scaled(source, method) for method in METHODS for source in sources]
-    made = studied(work, store, workers, progress)
-    figures: dict[str, Any] = {}
-    for method in METHODS:
-        scenes = [result for result in made if result["method"] == method]
-        figures[method] = {"layouts": [_at(scenes, count) for count in LAYOUTS], "scenes": scenes}
+    made = runner.by_case(METHODS, sources, Scaled)
+    figures = {
+        method: {"layouts": [_at(scenes, count) for count in LAYOUTS], "scenes": scenes}
+        for method, scenes in made
+    }
     return {"methods": figures}
 
 

@@ -10,13 +10,13 @@ from pathlib import Path
 from typing import Literal, Protocol
 
 import panoplan
-from panoplan.bench.points.scan import scanned
 from panoplan.datasets.detect import open_scene, read_truth
 from panoplan.datasets.mp3d_fpe import version_folder
 from panoplan.errors import InputError
 from panoplan.formats.ply import read_ply_points
 from panoplan.simulate.families import simulate_scene
 from panoplan.simulate.noise import NoiseModel
+from panoplan.simulate.scan import scanned
 from panoplan.simulate.scene import Grade, SimulatedScene
 from panoplan.types.arrays import FloatArray
 from panoplan.types.keyframe import Keyframe

@@ -6,13 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from panoplan.bench.parallel import Workers
 from panoplan.bench.v1.predict import METHOD_CODE, Row, made_of
 from panoplan.bench.v1.scenes import Recording, Simulated, code_version, digest
 from panoplan.bench.v1.score import score, summary
-from panoplan.bench.v1.store import KeptScene, Store
-from panoplan.bench.v1.study import studied
-from panoplan.pipeline import Progress
+from panoplan.bench.v1.store import KeptScene
+from panoplan.bench.v1.study import Runner
 from panoplan.simulate.noise import REAL, NoiseModel
 
 USUAL = "as it is"
@@ -105,27 +103,21 @@ def thinned(recording: Recording, stride: int) -> Recording:
     return replace(recording, keyframes=recording.keyframes[::stride])
 
 
-def swept(
-    sources: Sequence[Simulated], row: Row, store: Store, workers: Workers, progress: Progress
-) -> dict[str, Any]:
+def swept(sources: Sequence[Simulated], runner: Runner, row: Row) -> dict[str, Any]:
     """Measures all sweeps.
 
     Args:
         sources: scenes of one family.
+        runner: does the work.
         row: method.
-        store: what is kept.
-        workers: do the work.
-        progress: as of `studied`.
 
     Returns:
         For each sweep and factor the summary, each scene's scores, and keyframes a room.
     """
     kinds = [(name, factor) for name, factors in SWEEPS.items() for factor in factors]
-    work = [Swept(source, row, *kind) for kind in kinds for source in sources]
-    made = studied(work, store, workers, progress)
+    made = runner.by_case(kinds, sources, lambda source, kind: Swept(source, row, *kind))
     points = []
-    for name, factor in kinds:
-        scenes = [s for s in made if (s["swept"], s["factor"]) == (name, factor)]
+    for (name, factor), scenes in made:
         keyframes, rooms = (sum(scene[what] for scene in scenes) for what in ("keyframes", "rooms"))
         points.append(
             {
