@@ -84,7 +84,7 @@ def act(options: argparse.Namespace) -> int:
             scene = _scene(options, options.seed + number)
             folder = options.output if options.scenes is None else options.output / scene.name
             images = _photographed(scene, folder, options, options.seed + number, report)
-            _write(scene, folder, options, images)
+            _write(scene, folder, options, options.seed + number, images)
             told.append(
                 f"{len(scene.truth.plan.rooms)} rooms, {len(scene.keyframes)} keyframes: {folder}"
             )
@@ -131,6 +131,7 @@ def _write(
     scene: SimulatedScene,
     folder: Path,
     options: argparse.Namespace,
+    seed: int,
     images: dict[str, str] | None,
 ) -> None:
     from panoplan.formats.sequence import write_sequence
@@ -140,7 +141,7 @@ def _write(
             folder, scene.name, scene.keyframes, scene.truth, scene.camera_height_m, images
         )
         return
-    _write_mp3d_fpe(scene, folder if options.scenes is None else folder / "0", options.seed)
+    _write_mp3d_fpe(scene, folder if options.scenes is None else folder / "0", seed)
 
 
 def _write_mp3d_fpe(scene: SimulatedScene, folder: Path, seed: int) -> None:

@@ -147,9 +147,9 @@ def _seen(
         own = cameras[shapely.contains_xy(building.rooms[k].floor, cameras[:, :2])]
         # Closets are looked into.
         there = own if len(own) else cameras
-        _, near = cKDTree(there).query(points, k=min(_LOOKS, len(there)))
+        _, near = cKDTree(there).query(points, k=range(1, min(_LOOKS, len(there)) + 1))
         seen = np.zeros(len(points), dtype=np.bool_)
-        for column in near.reshape(len(points), -1).T:
+        for column in near.T:
             todo = np.flatnonzero(~seen)
             towards = points[todo] - there[column[todo]]
             reach = 1 - _SAME_SURFACE_M / np.sqrt((towards**2).sum(axis=1))
