@@ -76,3 +76,29 @@ def test_a_file_that_is_no_benchmark(page):
     with pytest.raises(InputError, match="no benchmark file"):
         update(page, page.parent / "results")
     assert page.read_text() == PAGE
+
+
+def test_exports_areas_and_models_are_told(page):
+    dxf = {"faults": 0, "dimensions": 90, "dimension_error_mm": 0.0009}
+    row = {"seconds": 1.26, "cpu_seconds": 0.9, "bytes": 62141, "area_error_percent": 0.00064}
+    room = {"room": "a", "label": "den", "true_m2": 10.0, "area_m2": 10.2, "area_sigma_m2": 0.3}
+    lost = {"room": "b", "label": "", "true_m2": 2.0, "area_m2": None, "area_sigma_m2": None}
+    figures = {"scene": "home", "rooms": 2, "images": 3, "formats": {"svg": row}, "dxf": dxf,
+               "ifc": {"errors": 0}, "areas": [room, lost]}  # fmt: skip
+    camera = {"id": "k", "psnr_db": 20.25, "pixels_share": 0.8}
+    part = {"glb_bytes": 3e6, "psnr_db": 20.25, "cameras": [camera]}
+    shown = {"scene": "home", "photos": 9, "true_depth": True, "all_photos": part,
+             "without_the_five": {**part, "psnr_db": 18.0}}  # fmt: skip
+    _file(page.parent / "results", "a.json", benchmark="exports", figures=figures)
+    _file(page.parent / "results", "b.json", benchmark="model", figures=shown)
+    page.write_text(PAGE.replace("runtime", "exports, areas, model"))
+    assert update(page, page.parent / "results")
+    text = page.read_text()
+    for line in (
+        "| svg | 1.3 s | 0.9 s | 0.06 MB | 0.0006 % |",
+        "| den | 10.00 m² | 10.20 m² ± 0.30 | 2.0 % |",
+        "| b | 2.00 m² | – | – |",
+        "| home, all photos | 9 | 20.2 dB | 20.2 | 80 % | yes | 3.00 MB |",
+        "| home, without the five | 9 | 18.0 dB | 20.2 | 80 % | yes | 3.00 MB |",
+    ):
+        assert line in text.splitlines()

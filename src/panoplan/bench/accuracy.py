@@ -8,9 +8,9 @@ from typing import Any, Literal
 
 import numpy as np
 
+from panoplan.bench.estimate import estimate
 from panoplan.bench.parallel import mapped, processes
 from panoplan.config import Config
-from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.metrics.report import Report, evaluate
 from panoplan.simulate.scene import Grade, simulate_flat
@@ -52,11 +52,8 @@ def _scene(work: tuple[Grade, int], config: Config, metric: bool) -> dict[str, A
     grade, seed = work
     scene = simulate_flat(seed, grade, metres_per_su=1.0 if metric else None)
     unit: Literal["unknown", "m"] = "m" if metric else "unknown"
-    estimator = FloorPlanEstimator(config, Walk(unit, scene.camera_height_m, len(scene.keyframes)))
-    for keyframe in scene.keyframes:
-        estimator.update(keyframe)
-    estimator.finish()
-    plan = estimator.plan()
+    walk = Walk(unit, scene.camera_height_m, len(scene.keyframes))
+    plan = estimate(scene.keyframes, config, walk)
     assert scene.truth.trajectory is not None
     # The method's unit of length is the height of the first camera, bob included.
     first_m = scene.camera_height_m - float(scene.truth.trajectory.translations[0, 1])

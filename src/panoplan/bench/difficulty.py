@@ -12,13 +12,12 @@ import numpy as np
 import shapely
 import shapely.ops
 
-from panoplan.bench.home import TRUE_POSES
+from panoplan.bench.estimate import estimate, true_poses
 from panoplan.bench.parallel import mapped, processes
 from panoplan.config import Config
-from panoplan.datasets.detect import open_scene, read_truth
+from panoplan.datasets.detect import read_truth
 from panoplan.datasets.scene import Scene
 from panoplan.errors import InputError
-from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk as Known
 from panoplan.formats.sequence import DESCRIPTION, read_json
 from panoplan.geometry.rigid import heading_of
@@ -159,7 +158,7 @@ def read_twin(folder: Path) -> Twin:
     Raises:
         InputError: the folder is not complete.
     """
-    scene: Scene = open_scene(folder, trajectory=folder / TRUE_POSES)
+    scene = true_poses(folder)
     truth = read_truth(folder)
     if scene.camera_height_m is None:
         raise InputError(folder / DESCRIPTION, "no camera_height", "metres")
@@ -190,11 +189,10 @@ def figures(layouts: list[Layout | None], twin: Twin, config: Config) -> dict[st
         config: settings.
     """
     known = Known("m", twin.camera_height_m, len(layouts))
-    estimator = FloorPlanEstimator(config, known)
-    for keyframe, layout in zip(twin.keyframes, layouts, strict=True):
-        estimator.update(replace(keyframe, layout=layout))
-    estimator.finish()
-    report = evaluate(estimator.plan(), twin.truth, rooms="rooms_partial", align="none")
+    pairs = zip(twin.keyframes, layouts, strict=True)
+    keyframes = [replace(keyframe, layout=layout) for keyframe, layout in pairs]
+    plan = estimate(keyframes, config, known)
+    report = evaluate(plan, twin.truth, rooms="rooms_partial", align="none")
     _, half, seven = report.rooms.scores
     corner_cm = report.corners.true_to_predicted.median_cm
     return {

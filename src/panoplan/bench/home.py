@@ -7,9 +7,9 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from panoplan.bench.estimate import estimate, true_poses
 from panoplan.config import Config
-from panoplan.datasets.detect import open_scene, read_truth
-from panoplan.estimator.front import FloorPlanEstimator
+from panoplan.datasets.detect import read_truth
 from panoplan.estimator.state import Walk
 from panoplan.metrics.report import as_dict, evaluate
 from panoplan.types.keyframe import Keyframe
@@ -17,7 +17,6 @@ from panoplan.types.pose import Pose
 
 _UNIT_M = 3.7
 """Metres a trajectory unit where the unit is to be unknown: any number will do."""
-TRUE_POSES = "trajectory_gt.tum"
 
 
 def measure(folder: Path, config: Config) -> dict[str, Any]:
@@ -34,7 +33,7 @@ def measure(folder: Path, config: Config) -> dict[str, Any]:
     Raises:
         InputError: the folder is not complete.
     """
-    scene = open_scene(folder, trajectory=folder / TRUE_POSES)
+    scene = true_poses(folder)
     truth = read_truth(folder)
     result: dict[str, Any] = {"scene": folder.name}
     for name in ("metric", "recovered"):
@@ -43,11 +42,7 @@ def measure(folder: Path, config: Config) -> dict[str, Any]:
         walk = Walk("m" if metric else "unknown", scene.camera_height_m, len(keyframes))
         for _ in range(2):
             started = time.perf_counter()
-            estimator = FloorPlanEstimator(config, walk)
-            for keyframe in keyframes:
-                estimator.update(keyframe)
-            estimator.finish()
-            plan = estimator.plan()
+            plan = estimate(keyframes, config, walk)
             seconds = time.perf_counter() - started
         report = as_dict(evaluate(plan, truth, rooms="rooms_partial", align="none"))
         result[name] = {"seconds": seconds, **report}

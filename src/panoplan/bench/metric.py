@@ -9,11 +9,11 @@ from typing import Any, Literal
 import numpy as np
 
 from panoplan.bench.accuracy import GRADES
+from panoplan.bench.estimate import estimate
 from panoplan.bench.parallel import mapped, processes
 from panoplan.config import Config
 from panoplan.editing.apply import apply
 from panoplan.editing.change import changed
-from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.metrics.walls import true_wall
 from panoplan.simulate.scene import Grade, SimulatedScene, simulate_flat
@@ -90,11 +90,7 @@ def _scene(work: tuple[Grade, int], config: Config) -> dict[str, Any]:
 def _plan(
     scene: SimulatedScene, config: Config, unit: Literal["unknown", "m"], height: float | None
 ) -> FloorPlan:
-    estimator = FloorPlanEstimator(config, Walk(unit, height, len(scene.keyframes)))
-    for keyframe in scene.keyframes:
-        estimator.update(keyframe)
-    estimator.finish()
-    return estimator.plan()
+    return estimate(scene.keyframes, config, Walk(unit, height, len(scene.keyframes)))
 
 
 def _lengths(plan: FloorPlan, scene: SimulatedScene) -> dict[str, tuple[float, float]]:

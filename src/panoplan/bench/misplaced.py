@@ -10,8 +10,9 @@ from typing import Any
 import numpy as np
 import shapely
 
+from panoplan.bench.estimate import true_poses
 from panoplan.config import Config
-from panoplan.datasets.detect import open_scene, read_truth
+from panoplan.datasets.detect import read_truth
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.pipeline import Progress
@@ -20,7 +21,6 @@ from panoplan.types.events import CamerasMisplaced
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.pose import Pose
 
-_TRUE_POSES = "trajectory_gt.tum"
 SHIFT_M = 2.6
 """As far as a real photo-tour aligner misplaced a bedroom."""
 _BACK_M = 0.3
@@ -43,7 +43,7 @@ def measure_home(folder: Path, config: Config, trials: int, report: Progress) ->
     Raises:
         InputError: the folder is not complete.
     """
-    scene = open_scene(folder, trajectory=folder / _TRUE_POSES)
+    scene = true_poses(folder)
     truth = read_truth(folder)
     places = shapely.points(
         [k.pose.translation[[0, 2]] for k in scene.keyframes if k.pose is not None]

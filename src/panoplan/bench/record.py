@@ -5,11 +5,14 @@ from __future__ import annotations
 import os
 import platform
 import subprocess
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from panoplan import __version__
+
+PRESETS = ("paper", "released", "sound", "default")
+"""In the order of tables."""
 
 
 def record(name: str, settings: Mapping[str, Any], figures: Any) -> dict[str, Any]:
@@ -33,6 +36,12 @@ def record(name: str, settings: Mapping[str, Any], figures: Any) -> dict[str, An
         "figures": figures,
         "settings": dict(settings),
     }
+
+
+def of_benchmark(records: Sequence[dict[str, Any]], name: str) -> list[dict[str, Any]]:
+    """The records of one benchmark, in the order of their presets."""
+    chosen = [data for data in records if data["benchmark"] == name]
+    return sorted(chosen, key=lambda data: PRESETS.index(data["settings"]["preset"]))
 
 
 def _commit() -> str | None:

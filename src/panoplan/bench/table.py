@@ -7,8 +7,9 @@ import re
 from pathlib import Path
 from typing import Any
 
-from panoplan.bench import difficulty_tables
+from panoplan.bench import difficulty_tables, export_tables
 from panoplan.bench.markdown import number, pair, table
+from panoplan.bench.record import of_benchmark
 from panoplan.bench.v1 import tables as v1
 from panoplan.errors import InputError
 from panoplan.formats.atomic import read_bytes, write_text
@@ -18,7 +19,6 @@ _MARKS = re.compile(
     re.DOTALL,
 )
 _LIMIT = 64 * 2**20
-_PRESETS = ("paper", "released", "sound", "default")
 
 
 def update(page: Path, folder: Path) -> bool:
@@ -28,7 +28,7 @@ def update(page: Path, folder: Path) -> bool:
         page: Markdown with `<!-- measured: NAMES -->` and `<!-- end of measured -->`; the names,
             with commas, are of the tables that come between: buildings,
             methods, shapes, scale, sweeps, causes, difficulty, errors, flats, metric,
-            home, misplaced, layouts, runtime.
+            home, misplaced, layouts, exports, areas, model, runtime.
         folder: of the benchmark files.
 
     Returns:
@@ -80,6 +80,9 @@ def updated(text: str, folder: Path, page: Path) -> str:
         "metric": _metric,
         "misplaced": _misplaced,
         "layouts": _layouts,
+        "exports": export_tables.formats,
+        "areas": export_tables.areas,
+        "model": export_tables.model,
         "runtime": _runtime,
     }
 
@@ -104,14 +107,9 @@ def _read(path: Path) -> dict[str, Any]:
     return dict(data)
 
 
-def _of(files: list[dict[str, Any]], name: str) -> list[dict[str, Any]]:
-    chosen = [data for data in files if data["benchmark"] == name]
-    return sorted(chosen, key=lambda data: _PRESETS.index(data["settings"]["preset"]))
-
-
 def _flats(files: list[dict[str, Any]]) -> str:
     rows = []
-    for data in _of(files, "accuracy"):
+    for data in of_benchmark(files, "accuracy"):
         for grade in ("mild", "hard"):
             s = data["figures"][grade]["summary"]
             scale = "given" if data["figures"]["metric"] else "recovered"
@@ -133,7 +131,7 @@ def _flats(files: list[dict[str, Any]]) -> str:
             )
     if not rows:
         return ""
-    count = _of(files, "accuracy")[0]["figures"]["mild"]["summary"]["flats"]
+    count = of_benchmark(files, "accuracy")[0]["figures"]["mild"]["summary"]["flats"]
     heads = ["preset, noise", "scale, median error", "rooms found", "mean IoU", "corners", "walls",
              "within 1 / 2 σ", "doors R / P", "camera RMSE cm"]  # fmt: skip
     title = (
@@ -145,7 +143,7 @@ def _flats(files: list[dict[str, Any]]) -> str:
 
 def _home(files: list[dict[str, Any]]) -> str:
     rows = []
-    for data in _of(files, "home"):
+    for data in of_benchmark(files, "home"):
         for name in ("metric", "recovered"):
             f = data["figures"][name]
             rooms, corners = f["rooms"], f["corners"]
@@ -169,7 +167,7 @@ def _home(files: list[dict[str, Any]]) -> str:
             )
     if not rows:
         return ""
-    true = _of(files, "home")[0]["figures"]["metric"]["rooms"]["true"]
+    true = of_benchmark(files, "home")[0]["figures"]["metric"]["rooms"]["true"]
     heads = ["preset", "scale, error", "rooms at IoU .5 / told", "at .7 / told", "mean IoU",
              "floor IoU", "corners", "overlap", "doors R / P", "whole walk"]  # fmt: skip
     title = (
@@ -181,7 +179,7 @@ def _home(files: list[dict[str, Any]]) -> str:
 
 def _metric(files: list[dict[str, Any]]) -> str:
     rows = []
-    for data in _of(files, "metric"):
+    for data in of_benchmark(files, "metric"):
         for grade in ("mild", "hard"):
             for source, s in data["figures"][grade]["summary"].items():
                 rows.append(
@@ -219,7 +217,7 @@ def _misplaced(files: list[dict[str, Any]]) -> str:
             str(f["moved_back"]),
             str(f["named_where_none_is_shifted"]),
         ]
-        for f in (data["figures"] for data in _of(files, "misplaced"))
+        for f in (data["figures"] for data in of_benchmark(files, "misplaced"))
     ]
     if not rows:
         return ""
@@ -230,7 +228,7 @@ def _misplaced(files: list[dict[str, Any]]) -> str:
 
 def _layouts(files: list[dict[str, Any]]) -> str:
     rows, doubts = [], []
-    for f in (data["figures"] for data in _of(files, "layouts")):
+    for f in (data["figures"] for data in of_benchmark(files, "layouts")):
         for name in ("all", "without_openings", "with_openings"):
             part = f[name]
             if part["panoramas"]:
@@ -257,7 +255,7 @@ def _layouts(files: list[dict[str, Any]]) -> str:
 
 def _runtime(files: list[dict[str, Any]]) -> str:
     rows = []
-    for data in _of(files, "runtime"):
+    for data in of_benchmark(files, "runtime"):
         f = data["figures"]
         rows.append(
             [
@@ -272,7 +270,7 @@ def _runtime(files: list[dict[str, Any]]) -> str:
         )
     if not rows:
         return ""
-    machine = _of(files, "runtime")[0]["machine"]
+    machine = of_benchmark(files, "runtime")[0]["machine"]
     heads = ["preset", "update()", "late / early", "leaving a room", "plan()", "finish()",
              "peak memory"]  # fmt: skip
     title = (

@@ -23,21 +23,24 @@ def add_parser(commands: Any) -> None:
         "room's cameras of a tour shifted, on simulated flats or on a scene. difficulty: a scene's "
         "real layouts against simulated ones. runtime: time and memory on a long walk. odometry: "
         "on rendered walks. tour: joining a scene's photos. layouts: a layout network on a folder "
-        "with images and true layouts. table: writes what they measured into a page.",
+        "with images and true layouts. exports: what each format of a scene's plan takes, read "
+        "back. model: the textured model against a scene's photos. table: writes what they "
+        "measured into a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
     parser.add_argument(
         "what",
         choices=[
             "v1", "accuracy", "metric", "home", "misplaced", "difficulty", "runtime", "odometry",
-            "tour", "layouts", "table",
+            "tour", "layouts", "exports", "model", "table",
         ],
     )  # fmt: skip
     parser.add_argument(
         "input",
         nargs="?",
         type=Path,
-        help="home, misplaced, difficulty, tour, layouts: scene; odometry: walks; table: page",
+        help="home, misplaced, difficulty, tour, layouts, exports, model: scene; odometry: walks; "
+        "table: page",
     )
     parser.add_argument(
         "--model", type=Path, metavar="ONNX", help="layouts: network (default: the one shipped)"
@@ -72,10 +75,12 @@ def act(options: argparse.Namespace) -> int:
     from panoplan.bench import (
         accuracy,
         difficulty,
+        exports,
         home,
         layouts,
         metric,
         misplaced,
+        model,
         odometry,
         runtime,
         table,
@@ -85,7 +90,7 @@ def act(options: argparse.Namespace) -> int:
     from panoplan.config import as_dict
     from panoplan.layouts.onnx import SHIPPED, OnnxLayouts
 
-    asked = ("home", "difficulty", "odometry", "tour", "layouts", "table")
+    asked = ("home", "difficulty", "odometry", "tour", "layouts", "exports", "model", "table")
     if options.what in asked and options.input is None:
         raise InputError(f"bench {options.what}", "no path", f"bench {options.what} PATH")
     if options.what == "table":
@@ -113,6 +118,10 @@ def act(options: argparse.Namespace) -> int:
         elif options.what == "layouts":
             network = OnnxLayouts(options.model or SHIPPED, threads=1)
             figures = layouts.measure(options.input, network, report)
+        elif options.what == "exports":
+            figures = exports.measure(options.input, config, report)
+        elif options.what == "model":
+            figures = model.measure(options.input, config, report, options.pictures)
         elif options.what == "tour":
             figures = tour.measure(options.input, config, report)
         elif options.what == "odometry":

@@ -12,10 +12,10 @@ CAMERAS = np.array([[1.0, 1.2], [3.0, 1.8]])
 HEIGHT = 1.4
 
 
-def painted_plan():
-    """The room with both cameras, nothing else."""
+def painted_plan(cameras=CAMERAS):
+    """The room with its cameras, nothing else."""
     return plan(
-        (ROOM,), CAMERAS, camera_height_m=HEIGHT, doors=(), openings=(), windows=(), shared_walls=()
+        (ROOM,), cameras, camera_height_m=HEIGHT, doors=(), openings=(), windows=(), shared_walls=()
     )
 
 

@@ -27,7 +27,9 @@ _FARTHEST_M = 8.0
 _AFAR = 1e-3
 _COARSE = 6
 _GRAZING = 0.08
-_NADIR_DEG = (52.0, 62.0)
+_UNCLEAR = 4
+"""Power of that fading: another camera's view is soon the better one."""
+NADIR_DEG = (52.0, 62.0)
 """Below the horizon, from where the tripod or hand may be seen: fades out between the two."""
 
 
@@ -143,8 +145,8 @@ def _weights(surface: Surface, photo: Photo, points: FloatArray) -> FloatArray:
     distance = np.linalg.norm(ray, axis=1)
     facing = -(ray @ surface.normal) / distance
     depression = np.degrees(np.arcsin(np.clip(-ray[:, 1] / distance, -1, 1)))
-    first, last = _NADIR_DEG
-    clear = np.clip((last - depression) / (last - first), 0.0, 1.0)
+    first, last = NADIR_DEG
+    clear = np.clip((last - depression) / (last - first), 0.0, 1.0) ** _UNCLEAR
     shown = (facing > _GRAZING) & photo.sees(points)
     # Other rooms' cameras look in through doors: they help where its own see nothing.
     trust = 1.0 if photo.room == surface.room or surface.kind == "reveal" else _AFAR

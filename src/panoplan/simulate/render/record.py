@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
 from panoplan.formats.atomic import make_folder, write_bytes
+from panoplan.formats.depth import write_depth
 from panoplan.formats.layout_npz import write_layout_npz
 from panoplan.geometry.rigid import heading_of
 from panoplan.simulate.render.develop import develop, draw_development, jpeg
 from panoplan.simulate.render.labels import Labeller
-from panoplan.simulate.render.materials import Float32Array
 from panoplan.simulate.render.scene import Quality, Scene
 from panoplan.simulate.scene import SimulatedScene
 from panoplan.simulate.walks import about_y
 
 IMAGES, DEPTHS, TRUE_LAYOUTS = "images", "depth", "layouts_gt"
 _JPEG_QUALITY = 92
-_MOST_MM = 65535
 
 
 def record(
@@ -79,15 +76,7 @@ def record(
         )
         images[key] = f"{IMAGES}/{key}.jpg"
         write_bytes(folder / images[key], jpeg(picture, _JPEG_QUALITY))
-        write_bytes(folder / DEPTHS / f"{key}.png", _depth_png(panorama.distance_m))
+        write_depth(folder / DEPTHS / f"{key}.png", panorama.distance_m)
         write_layout_npz(folder / TRUE_LAYOUTS / f"{key}.npz", labels.closed)
         told(k + 1, len(simulated.keyframes))
     return images
-
-
-def _depth_png(distance_m: Float32Array) -> bytes:
-    known = np.isfinite(distance_m)
-    millimetres = np.rint(np.where(known, distance_m, 0) * 1000).clip(0, _MOST_MM)
-    buffer = io.BytesIO()
-    Image.fromarray(millimetres.astype(np.uint16)).save(buffer, format="PNG")
-    return buffer.getvalue()
