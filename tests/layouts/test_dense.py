@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from panoplan.layouts.dense import Dense, layout, likely_spans, mean, turned, widened
+from panoplan.geometry.sphere import column_heading
+from panoplan.layouts.dense import Dense, closed, layout, likely_spans, mean, turned, widened
 
 
 @pytest.mark.parametrize(
@@ -56,3 +57,29 @@ def test_more_columns_look_where_the_few_did():
     wide = widened(Dense(-0.6 + 0.2 * np.sin(heading)), 1024)
     heading = 2 * np.pi * (np.arange(1024) + 0.5) / 1024 - np.pi
     np.testing.assert_allclose(wide.floor, -0.6 + 0.2 * np.sin(heading), atol=3e-4)
+
+
+@pytest.mark.parametrize("turn", [0, 500])
+def test_a_passage_is_closed_by_the_line_between_its_jambs(turn):
+    """A wall at z = 2 camera heights; a part of it, over the edge or not, is seen through."""
+    angle = column_heading(np.arange(1024, dtype=np.float64), 1024)
+    with np.errstate(divide="ignore"):
+        distance = np.where(np.cos(angle) > 0.3, 2 / np.cos(angle), 6.0)
+    true = np.roll(-np.arctan(1 / distance), turn)
+    seen = true.copy()
+    inside = np.roll(np.abs(np.arange(1024) - 540) <= 60, turn)
+    seen[inside] = -np.arctan(1 / 9.0)
+    span = (np.array([[480.0, 600.0]]) + turn) % 1024
+    np.testing.assert_allclose(closed(seen, span), true, atol=2e-3)
+    np.testing.assert_array_equal(closed(seen, np.empty((0, 2))), seen)
+    told = layout(Dense(seen, chances={"openings": inside * 1.0}))
+    np.testing.assert_allclose(told.floor_boundary, true, atol=2e-3)
+
+
+def test_a_passage_without_an_edge_on_both_sides_stays_as_it_is():
+    floor = np.full(1024, -0.5)
+    floor[100:200] = -0.2
+    floor[90:100] = np.nan
+    np.testing.assert_array_equal(closed(floor, np.array([[100.0, 199.0]])), floor)
+    everywhere = np.array([[0.0, 1023.0], [5.0, 6.0]])
+    np.testing.assert_array_equal(closed(floor, everywhere), floor)

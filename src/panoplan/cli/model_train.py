@@ -48,9 +48,9 @@ def act(options: argparse.Namespace) -> int:
     except ImportError:
         raise MissingExtraError("training", "torch", "train") from None
     from panoplan.layouts.network.data import Featuriser
-    from panoplan.layouts.network.export import export
+    from panoplan.layouts.network.finish import finish
     from panoplan.layouts.network.shards import HELD_OUT_SEED, SHARD, render_shard
-    from panoplan.layouts.network.train import CHECKPOINT, head_plan, load, train, tuned_plan
+    from panoplan.layouts.network.train import CHECKPOINT, head_plan, train, tuned_plan
     from panoplan.layouts.network.trunk import pretrained
 
     numbers = [HELD_OUT_SEED, *range(-(-options.panoramas // SHARD))]
@@ -65,7 +65,7 @@ def act(options: argparse.Namespace) -> int:
     for plan, part in ((head_plan, share), (tuned_plan, 1 - share)):
         if part > 0:
             train(options.input, options.input, plan(options.minutes * part, options.seed), say)
-    export(load(options.input / CHECKPOINT), options.output)
+    finish(options.input, options.input / CHECKPOINT, options.output, say)
     print(options.output)
     return 0
 

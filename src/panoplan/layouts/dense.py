@@ -8,10 +8,14 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from panoplan.formats.horizonnet import WIDTH, at_columns, corner_peaks
+from panoplan.geometry.sphere import column_heading
 from panoplan.types.arrays import FloatArray
 from panoplan.types.layout import Layout, Spans
 
 _LIKELY = 0.5
+_NARROWEST, _WIDEST = 1 / 360, 230 / 360
+_BESIDE, _BESIDE_OF = (2, 6), 512
+"""Columns beside a passage that tell where its jamb stands, of so many."""
 _SPANS = ("doors", "openings", "windows")
 
 
@@ -98,22 +102,60 @@ def widened(dense: Dense, width: int) -> Dense:
 def layout(dense: Dense) -> Layout:
     """The layout: boundaries as they are, corners at peaks, spans where they are likely.
 
-    It has at least 1024 columns, so that walls seen at a slant are no loose points.
+    Doors and openings are closed: there the floor's edge is straight. It has at least 1024 columns,
+    so that walls seen at a slant are no loose points.
     """
     if len(dense.floor) < WIDTH:
         dense = widened(dense, WIDTH)
     corners = dense.chances.get("corners")
-    spans = None
+    spans, floor = None, dense.floor
     if any(name in dense.chances for name in _SPANS):
         none = np.zeros(len(dense.floor))
         spans = Spans(**{name: likely_spans(dense.chances.get(name, none)) for name in _SPANS})
+        floor = closed(floor, np.concatenate([spans.doors, spans.openings]))
     return Layout(
-        dense.floor,
+        floor,
         dense.ceiling,
         None if corners is None else corner_peaks(corners),
         dense.sigma,
         spans,
     )
+
+
+def closed(floor: FloatArray, spans: FloatArray) -> FloatArray:
+    """The floor's edge drawn straight across passages, from what is seen on both sides of each.
+
+    Where a network sees through a passage, or half through it, its edge bends away from the line
+    that the jambs fix.
+
+    Args:
+        floor: (W,) elevation in rad, NaN where unknown.
+        spans: (K, 2) first and last column of each passage; those narrower than a degree or wider
+            than 230°, and those without an edge below the horizon on both sides, stay as they are.
+
+    Returns:
+        (W,) elevation.
+    """
+    width = len(floor)
+    angle = column_heading(np.arange(width, dtype=np.float64), width)
+    rays = np.stack([np.sin(angle), np.cos(angle)], axis=1)
+    beside = np.arange(*_BESIDE) * width // _BESIDE_OF
+    out = floor.copy()
+    for first, last in spans.astype(int):
+        count = (last - first) % width + 1
+        if not _NARROWEST <= count / width <= _WIDEST:
+            continue
+        jambs = [(first - beside) % width, (last + beside) % width]
+        if not (floor[jambs] < 0).all():
+            continue
+        near, far = (np.median(rays[j] / np.tan(-floor[j])[:, None], axis=0) for j in jambs)
+        normal = np.array([near[1] - far[1], far[0] - near[0]])
+        columns = (first + np.arange(count)) % width
+        with np.errstate(divide="ignore"):
+            distance = (near @ normal) / (rays[columns] @ normal)
+        on_line = distance > 0
+        out[columns[on_line]] = -np.arctan(1 / distance[on_line])
+    return out
 
 
 def likely_spans(chance: FloatArray) -> FloatArray:

@@ -8,7 +8,10 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="the extra train is not installed")
 
+from panoplan.layouts.network import calibration, confidence  # noqa: E402
 from panoplan.layouts.network import train as training  # noqa: E402
+from panoplan.layouts.network.calibration import KNOTS_CH, Widening  # noqa: E402
+from panoplan.layouts.network.confidence import spoilt  # noqa: E402
 from panoplan.layouts.network.data import batches  # noqa: E402
 from panoplan.layouts.network.export import export  # noqa: E402
 from panoplan.layouts.network.head import OUTPUTS, Head, LayoutNetwork  # noqa: E402
@@ -66,7 +69,8 @@ def test_a_folded_normalisation_is_the_normalisation():
 @torch.no_grad()
 def test_turning_the_panorama_turns_the_answer(network):
     image = torch.randn(1, 3, 256, 512)
-    answer, turned = network(image), network(torch.roll(image, 96, dims=-1))
+    (answer, sure), (turned, still) = network(image), network(torch.roll(image, 96, dims=-1))
+    torch.testing.assert_close(sure, still, rtol=1e-3, atol=1e-3)
     assert answer.shape == (1, len(OUTPUTS), 512)
     assert answer.std(dim=-1).min() > 0
     torch.testing.assert_close(torch.roll(answer, 96, dims=-1), turned, rtol=1e-3, atol=1e-3)
@@ -126,7 +130,7 @@ def test_training_learns_and_goes_on(tmp_path, monkeypatch, network, trunk_rate)
 
 def test_the_exported_file_says_the_same_and_what_it_is(tmp_path, network):
     path = tmp_path / "layout.onnx"
-    export(network, path, sigma_factor=2.0)
+    export(network, path, np.full(len(KNOTS_CH), np.log(2.0)))
     assert path.stat().st_size < 20e6
     shipped = OnnxLayouts(path, threads=1)
     assert (shipped.spec.height, shipped.spec.width) == (256, 512)
@@ -134,7 +138,8 @@ def test_the_exported_file_says_the_same_and_what_it_is(tmp_path, network):
     told = shipped(pixels)
     image = torch.from_numpy((pixels.astype(np.float32) - 127) / 128).permute(2, 0, 1)[None]
     with torch.no_grad():
-        answer = network(image)[0].numpy()
+        answer, sure = (part[0].numpy() for part in network(image))
+    assert told.confidence == pytest.approx(1 / (1 + np.exp(-sure[0])), rel=1e-3)
     # An untrained network also says what no elevation can be; that is told as unknown.
     known = np.abs(answer[0]) < 1.5
     assert known.mean() > 0.2
@@ -142,3 +147,65 @@ def test_the_exported_file_says_the_same_and_what_it_is(tmp_path, network):
     np.testing.assert_allclose(told.floor[known], answer[0][known], atol=0.05 * spread)
     sigma = 2 * np.sqrt(2) * np.exp(answer[3])
     np.testing.assert_allclose(told.sigma[known], sigma[known], rtol=0.3, atol=1e-3)
+
+
+def test_widening_is_linear_in_the_elevation_between_the_knots():
+    factors = np.log(np.arange(1.0, len(KNOTS_CH) + 1))
+    knots = -np.arctan(1 / np.array(KNOTS_CH))
+    places = np.array([-1.5, *knots, (knots[2] + knots[3]) / 2, -0.01])
+    wide = Widening(factors)(torch.full((1, len(places)), -3.0), torch.tensor(places[None]).float())
+    expected = -3 + np.array([factors[0], *factors, (factors[2] + factors[3]) / 2, factors[-1]])
+    np.testing.assert_allclose(wide[0].numpy(), expected, atol=1e-5)
+
+
+def test_scales_are_widened_where_the_errors_are_wider(tmp_path, monkeypatch, network):
+    """All columns are told at 1.2 camera heights or at 3.3, where they err thrice as much."""
+    folder, rng = _folder(tmp_path, noise=0.0), np.random.default_rng(0)
+    level = -np.arctan(1 / np.where(np.arange(512) < 256, 1.2, 3.3))
+    answer = torch.zeros(_COUNT, len(OUTPUTS), 512)
+    answer[:, 0], answer[:, 3] = torch.from_numpy(level).float(), float(np.log(0.01))
+    rows = np.zeros((_COUNT, len(TARGETS), 512), dtype=np.float32)
+    errors = np.where(np.arange(512) < 256, 0.02, 0.06) * rng.laplace(size=(_COUNT, 512))
+    rows[:, 0] = level + errors
+    np.save(folder / "targets-0000000.npy", rows)
+    monkeypatch.setattr(calibration, "answer_of", lambda *a, **k: answer)
+    factors = np.exp(calibration.widening(network, folder, [0], tuned=False))
+    np.testing.assert_allclose(factors[KNOTS_CH.index(1.2)], 2.0, rtol=0.15)
+    np.testing.assert_allclose(factors[KNOTS_CH.index(3.3)], 6.0, rtol=0.15)
+    # Nothing is known of what is nearer than all; what is farther is as what is a little nearer.
+    assert factors[0] == 1.0
+    assert factors[-1] == factors[KNOTS_CH.index(3.3)]
+
+
+@pytest.mark.parametrize("seed", range(12))
+def test_what_is_spoilt_is_no_upright_panorama(seed):
+    """Rows of an image that is dark below and bright above."""
+    image = np.zeros((256, 512, 3), dtype=np.uint8)
+    image[:128], image[128:] = 200, 50
+    wrong = spoilt(image, np.random.default_rng(seed))
+    assert wrong.shape == image.shape
+    assert wrong.dtype == np.uint8
+    off = np.abs(wrong.astype(float) - image).mean()
+    # A part of it may be alike, stretched; all others are far off.
+    assert off > 20 or wrong[:40].std() < 1
+
+
+def test_confidence_is_learnt_from_what_is_spoilt(tmp_path, monkeypatch, network):
+    """A featuriser that tells only how bright the upper half is."""
+    image = np.zeros((256, 512, 3), dtype=np.uint8)
+    image[:128], image[128:] = 200, 50
+    for number in (0, HELD_OUT_SEED):
+        np.save(tmp_path / f"images-{number:07d}.npy", np.repeat(image[None], 12, axis=0))
+
+    class Brightness:
+        def __init__(self, trunk):
+            pass
+
+        def __call__(self, image):
+            rows = image.reshape(8, 32, 512, 3).mean(axis=(1, 2, 3)) / 255
+            return [np.tile(rows[None, :, None], (320, 1, 16)).astype(np.float32)]
+
+    monkeypatch.setattr(confidence, "Featuriser", Brightness)
+    monkeypatch.setattr(confidence, "spoilt", lambda image, rng: image[::-1])
+    made = copy.deepcopy(network)
+    assert confidence.fit(made, tmp_path, [0], HELD_OUT_SEED) == (1.0, 1.0)

@@ -7,9 +7,11 @@ from pathlib import Path
 
 import numpy as np
 import torch
+from numpy.typing import NDArray
 from torch import Tensor, nn
 
 from panoplan.errors import MissingExtraError
+from panoplan.formats.image import Pixels
 from panoplan.layouts.network.samples import WIDTH
 from panoplan.layouts.network.trace import onnx_bytes
 from panoplan.layouts.network.trunk import Trunk
@@ -55,6 +57,12 @@ class Featuriser:
             model, options, providers=["CPUExecutionProvider"]
         )
 
+    def __call__(self, image: Pixels) -> list[NDArray[np.float32]]:
+        """Features at strides 8, 16 and 32 of a panorama (WIDTH / 2, WIDTH, 3)."""
+        pixels = (image.astype(np.float32) - MEAN) / STD
+        batch = np.ascontiguousarray(pixels.transpose(2, 0, 1)[None])
+        return [value[0] for value in self._session.run(None, {"image": batch})]
+
     def shard(self, folder: Path, number: int) -> None:
         """Computes the features of a rendered shard, unless they are there."""
         if (folder / f"deep-{number:07d}.npy").exists():
@@ -62,10 +70,8 @@ class Featuriser:
         images = np.load(folder / f"images-{number:07d}.npy", mmap_mode="r", allow_pickle=False)
         rows: dict[str, list[np.ndarray]] = {part: [] for part in _PARTS}
         for image in images:
-            pixels = (image.astype(np.float32) - MEAN) / STD
-            batch = np.ascontiguousarray(pixels.transpose(2, 0, 1)[None])
-            for part, value in zip(_PARTS, self._session.run(None, {"image": batch}), strict=True):
-                rows[part].append(value[0].astype(np.float16))
+            for part, value in zip(_PARTS, self(image), strict=True):
+                rows[part].append(value.astype(np.float16))
         for part in _PARTS:
             unfinished = folder / f".{part}-{number:07d}.npy"
             np.save(unfinished, np.array(rows[part]))

@@ -12,26 +12,27 @@ from torch import Tensor, nn
 from panoplan.errors import MissingExtraError
 from panoplan.formats.atomic import write_bytes
 from panoplan.layouts.contract import METADATA_KEY, ModelSpec, Output, spec_json
+from panoplan.layouts.network.calibration import Widening
 from panoplan.layouts.network.data import MEAN, STD
 from panoplan.layouts.network.head import BOUNDARIES, OUTPUTS, LayoutNetwork
 from panoplan.layouts.network.samples import WIDTH
 from panoplan.layouts.network.trace import onnx_bytes
+from panoplan.types.arrays import FloatArray
 
 NAME = "panoplan-layout-s"
 _LARGE = 1024
-_TENSOR = "answer"
+_TENSOR, _SURE = "answer", "sure"
 
 
 class _Calibrated(nn.Module):
-    def __init__(self, network: LayoutNetwork, sigma_factor: float) -> None:
+    def __init__(self, network: LayoutNetwork, log_factors: FloatArray) -> None:
         super().__init__()
-        self.network = network
-        shift = torch.zeros(len(OUTPUTS), 1)
-        shift[BOUNDARIES : 2 * BOUNDARIES] = float(np.log(sigma_factor))
-        self.register_buffer("shift", shift)
+        self.network, self.widening = network, Widening(log_factors)
 
-    def forward(self, image: Tensor) -> Tensor:
-        return self.network(image) + self.shift
+    def forward(self, image: Tensor) -> tuple[Tensor, Tensor]:
+        answer, sure = self.network(image)
+        wide = self.widening(answer[:, BOUNDARIES], answer[:, 0])[:, None]
+        return torch.cat([answer[:, :BOUNDARIES], wide, answer[:, BOUNDARIES + 1 :]], dim=1), sure
 
 
 def spec() -> ModelSpec:
@@ -52,6 +53,7 @@ def spec() -> ModelSpec:
             "doors": output("door", "logit"),
             "openings": output("opening", "logit"),
             "windows": output("window", "logit"),
+            "confidence": Output(_SURE, "logit"),
         },
         mean=(MEAN,) * 3,
         std=(STD,) * 3,
@@ -67,13 +69,13 @@ def spec() -> ModelSpec:
     )
 
 
-def export(network: LayoutNetwork, path: Path, *, sigma_factor: float = 1.0) -> None:
+def export(network: LayoutNetwork, path: Path, log_factors: FloatArray) -> None:
     """Writes the network as ONNX, its weights as 16-bit floats.
 
     Args:
         network: trained.
         path: of the file.
-        sigma_factor: what the stated uncertainty is multiplied by.
+        log_factors: what the floor's logarithmic scale lacks, as `calibration.widening` gives it.
 
     Raises:
         MissingExtraError: the package onnx is not installed.
@@ -83,8 +85,8 @@ def export(network: LayoutNetwork, path: Path, *, sigma_factor: float = 1.0) -> 
         import onnx
     except ImportError:
         raise MissingExtraError("exporting a network", "onnx", "train") from None
-    module = _Calibrated(network, sigma_factor)
-    model = onnx.load_from_string(onnx_bytes(module, (1, 3, WIDTH // 2, WIDTH), [_TENSOR]))
+    module = _Calibrated(network, log_factors)
+    model = onnx.load_from_string(onnx_bytes(module, (1, 3, WIDTH // 2, WIDTH), [_TENSOR, _SURE]))
     _halve(model, onnx)
     onnx.helper.set_model_props(model, {METADATA_KEY: spec_json(spec())})
     onnx.checker.check_model(model)

@@ -31,6 +31,8 @@ OUTPUTS = (
 )
 """Rows of the answer: elevations in rad, logarithms of Laplace scales in rad, logits."""
 BOUNDARIES = 3
+_DEEP_ROWS = 8
+_SURE = 10.0
 _DIM, _HEADS, _LAYERS = 224, 4, 3
 _FOLDED = (48, 64, 96)
 _START = (-0.6, -0.55, 0.5)
@@ -147,7 +149,7 @@ def _spread(x: Tensor, factor: int) -> Tensor:
 
 
 class LayoutNetwork(nn.Module):
-    """Trunk and head.
+    """Trunk and head, and how sure one may be that an image is what they expect.
 
     Args:
         trunk: the feature extractor.
@@ -157,7 +159,20 @@ class LayoutNetwork(nn.Module):
     def __init__(self, trunk: Trunk, head: Head) -> None:
         super().__init__()
         self.trunk, self.head = trunk, head
+        self.sure = nn.Linear(CHANNELS[2] * _DEEP_ROWS, 1)
+        # Until it is fitted, every image is believed.
+        nn.init.zeros_(self.sure.weight)
+        nn.init.constant_(self.sure.bias, _SURE)
 
-    def forward(self, image: Tensor) -> Tensor:
-        """(B, len(OUTPUTS), COLUMNS) of normalised images (B, 3, 256, 512)."""
-        return self.head(*self.trunk.above(self.trunk.below(image)))
+    def forward(self, image: Tensor) -> tuple[Tensor, Tensor]:
+        """What it says of normalised images (B, 3, 256, 512).
+
+        Returns:
+            (B, len(OUTPUTS), COLUMNS), and (B, 1) the logit of an upright panorama of a room.
+        """
+        features = self.trunk.above(self.trunk.below(image))
+        return self.head(*features), self.sure(self.summary(features[-1]))
+
+    def summary(self, deep: Tensor) -> Tensor:
+        """(B, channels · rows) means over the columns of the features at stride 32."""
+        return deep.mean(dim=-1).flatten(1)

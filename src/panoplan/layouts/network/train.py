@@ -82,7 +82,7 @@ def train(folder: Path, out: Path, plan: Plan, told: Callable[[str], None]) -> N
     torch.manual_seed(plan.seed)
     network = load(out / CHECKPOINT) if (out / CHECKPOINT).exists() else fresh()
     mean = _copy(network)
-    tuned = plan.trunk_rate > 0 or not _same(network.trunk, pretrained())
+    tuned = plan.trunk_rate > 0 or is_tuned(network)
     optimiser = torch.optim.AdamW(_groups(network, plan), weight_decay=0.02, betas=(0.9, 0.98))
     peaks = [group["lr"] for group in optimiser.param_groups]
     rng = np.random.default_rng(plan.seed)
@@ -124,6 +124,11 @@ def load(path: Path) -> LayoutNetwork:
     network = fresh()
     network.load_state_dict(torch.load(path, map_location="cpu", weights_only=True))
     return network
+
+
+def is_tuned(network: LayoutNetwork) -> bool:
+    """Whether the trunk is no longer ImageNet's."""
+    return not _same(network.trunk, pretrained())
 
 
 def loss_of(answer: Tensor, targets: Tensor) -> Tensor:
@@ -176,7 +181,7 @@ def evaluate(network: LayoutNetwork, folder: Path, *, tuned: bool = True) -> dic
         raise InputError(folder, "no held-out shard with features", "one for choosing models")
     errors, within, losses, counts = [], [], [], []
     for *features, targets in batches(folder, numbers, 32, None):
-        answer = _answer(network, features, tuned=tuned)
+        answer = answer_of(network, features, tuned=tuned)
         error = (answer[:, :BOUNDARIES] - targets[:, :BOUNDARIES]).abs()
         sigma = np.sqrt(2) * torch.exp(answer[:, BOUNDARIES : 2 * BOUNDARIES])
         errors.append(error.mean(dim=2).numpy() * _ROWS / np.pi)
@@ -198,8 +203,17 @@ def evaluate(network: LayoutNetwork, folder: Path, *, tuned: bool = True) -> dic
     return told
 
 
-def _answer(network: LayoutNetwork, features: list[Tensor], *, tuned: bool) -> Tensor:
-    """The network's answer from kept features, in 16-bit floats where that is safe."""
+def answer_of(network: LayoutNetwork, features: list[Tensor], *, tuned: bool) -> Tensor:
+    """The network's answer from kept features, in 16-bit floats where that is safe.
+
+    Args:
+        network: that answers.
+        features: at strides 8, 16 and 32, as ImageNet's trunk gives them.
+        tuned: False where the trunk is that one.
+
+    Returns:
+        (B, len(OUTPUTS), COLUMNS).
+    """
     with torch.autocast("cpu", torch.bfloat16):
         parts = network.trunk.above(features[0]) if tuned else features
         answer: Tensor = network.head(*parts)
@@ -208,7 +222,7 @@ def _answer(network: LayoutNetwork, features: list[Tensor], *, tuned: bool) -> T
 
 def _loss(network: LayoutNetwork, batch: Batch, *, tuned: bool) -> Tensor:
     *features, targets = batch
-    return loss_of(_answer(network, features, tuned=tuned), targets)
+    return loss_of(answer_of(network, features, tuned=tuned), targets)
 
 
 def _groups(network: LayoutNetwork, plan: Plan) -> list[dict[str, object]]:
