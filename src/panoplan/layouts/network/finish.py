@@ -11,7 +11,7 @@ from panoplan.layouts.network.export import export
 from panoplan.layouts.network.shards import shards
 from panoplan.layouts.network.train import is_tuned, load
 
-_CONFIDENCE_SHARDS = 2
+_CONFIDENCE_SHARDS = 1
 
 
 def finish(folder: Path, checkpoint: Path, out: Path, told: Callable[[str], None]) -> None:
