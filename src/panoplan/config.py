@@ -650,9 +650,9 @@ class GroupingConfig:
         0.4, "... and at least so long.", unit="camera heights", low=0.0, high=10.0
     )
     around_views: int = _setting(
-        200,
-        "Views looked at together when a room is left, beside its own; at the end of the walk all "
-        "are.",
+        100,
+        "Views looked at together when a room is left; of a room of more, some spread evenly over "
+        "it. At the end of the walk all are.",
         unit="views",
         low=1,
         high=1_000_000,
@@ -663,11 +663,11 @@ class GroupingConfig:
 class MisplacedConfig:
     """Cameras of a tour that stand in a wrong place; goes past the paper."""
 
-    min_step_ch: float = _setting(
-        0.6,
-        "Cameras whose median step is shorter are a walk, whose odometry holds them; only the "
-        "stills of a tour are placed one by one.",
-        unit="camera heights",
+    min_step: float = _setting(
+        1.0,
+        "Cameras whose median step is shorter than this multiple of the median range are a walk, "
+        "whose odometry holds them; only the stills of a tour are placed one by one. Walks have "
+        "0.24-0.45, tours 1.6-5.",
         low=0.0,
         high=100.0,
     )
@@ -986,6 +986,9 @@ class AdjustConfig:
         high=1.0,
     )
     odometry_deg: float = _setting(0.1, "The same of its heading.", unit="deg", low=1e-4, high=90.0)
+    odometry_scale: float = _setting(
+        0.0015, "The same of the logarithm of its scale, which changes slowly.", low=1e-6, high=1.0
+    )
     sigma_factor: float = _setting(
         1.5,
         "Factor on the standard deviations of where rooms lie: odometry errs alike over many "

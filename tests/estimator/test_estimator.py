@@ -224,7 +224,9 @@ def _with_a_gross_view():
 
 @pytest.mark.parametrize(("method", "event"), [("ispa", RoomsJoined), ("fusion", RoomsRegrouped)])
 def test_a_view_of_parts_of_two_rooms_is_no_third_room(method, event):
-    estimator = FloorPlanEstimator(override(EARLY, {"shape": {"method": method}}))
+    # However far its cameras are apart, it is a walk.
+    config = override(EARLY, {"shape": {"method": method}, "misplaced": {"min_step": 10.0}})
+    estimator = FloorPlanEstimator(config)
     events = [e for keyframe in _with_a_gross_view() for e in estimator.update(keyframe)]
     assert len([e for e in events if isinstance(e, RoomOpened)]) == 3
     events += estimator.finish()
@@ -235,6 +237,23 @@ def test_a_view_of_parts_of_two_rooms_is_no_third_room(method, event):
     assert set(left_out) <= {"gross"}
     in_rooms = [k for room in plan.rooms for k in room.keyframes]
     assert sorted([*in_rooms, *left_out]) == sorted(pose.id for pose in plan.trajectory)
+
+
+def test_of_a_room_with_many_views_some_spread_over_it_are_looked_at_when_it_is_left():
+    keyframes = _two_rooms()
+    config = override(EARLY, {"grouping": {"around_views": 4}})
+    estimator = FloorPlanEstimator(config)
+    events = [e for keyframe in keyframes for e in estimator.update(keyframe)]
+    assert [e for e in events if isinstance(e, RoomShaped)]
+    left = estimator.state.rooms[0]
+    # All its views stay with it, and move as those that were looked at.
+    assert [view.index for view in left.views] == list(range(10))
+    corrections = [estimator.state.cameras[k].correction for k in range(10)]
+    assert len(set(corrections)) <= 4
+    every = _plan(keyframes)
+    estimator.finish()
+    for some, all_ in zip(estimator.plan().rooms, every.rooms, strict=True):
+        np.testing.assert_allclose(some.polygon, all_.polygon, atol=0.01)
 
 
 def test_a_walls_sigma_and_a_pillar_reach_the_plan():

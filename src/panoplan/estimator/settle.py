@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -26,7 +26,8 @@ from panoplan.types.view import CorrectedLayouts, Correction, RegisteredLayout
 def settle_around(state: State, index: int, config: Config) -> tuple[State, tuple[Event, ...]]:
     """Settles the room that was left, with the rooms that claim most of its floor.
 
-    So many of them that it takes no longer however large the building is.
+    So many of them, and so many of their views, that it takes no longer however large the building
+    is or however long the camera stayed.
 
     Args:
         state: what is known.
@@ -48,12 +49,12 @@ def settle_around(state: State, index: int, config: Config) -> tuple[State, tupl
         if common[k] <= _TOUCHING or views > config.grouping.around_views:
             break
         near.append(k)
-    keyframes = _keyframes(state, near)
-    now = _regrouped(state, keyframes, config)
-    if config.adjust.rounds and len(keyframes) >= config.adjust.min_views:
-        now, _ = _adjusted(now, keyframes, 0, 0.0, config)
-        now = _regrouped(now, keyframes, config)
-    return _settled(state, now, keyframes, config)
+    representatives = _representatives(state, near, config.grouping.around_views)
+    now = _regrouped(state, representatives, config)
+    if config.adjust.rounds and len(representatives) >= config.adjust.min_views:
+        now, _ = _adjusted(now, representatives, 0, 0.0, config)
+        now = _regrouped(now, representatives, config)
+    return _settled(state, now, representatives, config)
 
 
 _TOUCHING = 0.05
@@ -74,21 +75,21 @@ def settle_level(state: State, level: int, config: Config) -> tuple[State, tuple
     there = _on(state, level)
     if not there:
         return state, ()
-    keyframes = _keyframes(state, there)
     now, replaced = _placed_anew(state, there, config)
+    every = _representatives(now, _on(now, level))
     # The outlines of rooms that have been left are enough to begin with.
     all_anew = bool(replaced) or not config.adjust.rounds
     begun = [k for k in _on(now, level) if all_anew or now.rooms[k].stale]
     if begun:
-        now = _regrouped(now, _keyframes(state, begun), config)
+        now = _regrouped(now, _representatives(now, begun), config)
     scale = state.scale
     sigma = 0.0 if scale is None or scale.method != "entropy" else scale.sigma or 0.0
     for number in range(config.adjust.rounds):
-        now, moved = _adjusted(now, keyframes, number, sigma, config)
+        now, moved = _adjusted(now, every, number, sigma, config)
         if number and moved < _MOVED_CH:
             break
-        now = _regrouped(now, keyframes, config, keep=number > 0)
-    now, told = _settled(state, now, keyframes, config)
+        now = _regrouped(now, every, config, keep=number > 0)
+    now, told = _settled(state, now, every, config)
     return now, (*replaced, *told)
 
 
@@ -146,31 +147,51 @@ _CONTRADICTED = "misplaced: its walls stand where others see none, and no other 
 _ELSEWHERE = "misplaced: its doors are elsewhere, so it was placed there"
 
 
+_Representatives = Mapping[int, int]
+"""Which view is looked at in place of each of some views, by places in the walk; mostly itself."""
+
+
+def _representatives(
+    state: State, chosen: Sequence[int], most: int | None = None
+) -> _Representatives:
+    """One for each view of some rooms: itself, or one of `most` spread evenly over each room."""
+    count = sum(len(state.rooms[k].views) for k in chosen)
+    stride = 1 if most is None else math.ceil(count / most)
+    return {
+        view.index: views[place - place % stride].index
+        for views in (state.rooms[k].views for k in chosen)
+        for place, view in enumerate(views)
+    }
+
+
 def _settled(
-    before: State, now: State, keyframes: frozenset[int], config: Config
+    before: State, now: State, representatives: _Representatives, config: Config
 ) -> tuple[State, tuple[Event, ...]]:
     """The rooms that hold these views as settled, the levels to be composed; what changed."""
-    held = set(_holding(now, keyframes))
+    held = set(_holding(now, representatives))
     settled = tuple(
-        replace(room, stale=False, stretches=_stretches(now, room, config)) if k in held else room
+        replace(room, stale=False, stretches=_stretches(now, room, representatives, config))
+        if k in held
+        else room
         for k, room in enumerate(now.rooms)
     )
     now = replace(now, rooms=settled, compositions=None)
-    return now, _told(before, now, keyframes)
+    return now, _told(before, now, representatives)
 
 
-def _stretches(state: State, room: RoomState, config: Config) -> tuple[WallStretch, ...]:
+def _stretches(
+    state: State, room: RoomState, representatives: _Representatives, config: Config
+) -> tuple[WallStretch, ...]:
     assert room.shape is not None
-    views = [state.cameras[view.index].correction.apply(view) for view in room.views]
+    views = [
+        state.cameras[view.index].correction.apply(view)
+        for view in room.views
+        if representatives[view.index] == view.index
+    ]
     return stretches(room.shape, views, config.apertures)
 
 
-def _keyframes(state: State, chosen: Sequence[int]) -> frozenset[int]:
-    """Places in the walk of the views of some rooms."""
-    return frozenset(view.index for k in chosen for view in state.rooms[k].views)
-
-
-def _holding(state: State, keyframes: frozenset[int]) -> list[int]:
+def _holding(state: State, keyframes: Collection[int]) -> list[int]:
     """The rooms that hold some of these views."""
     return [
         k
@@ -180,18 +201,20 @@ def _holding(state: State, keyframes: frozenset[int]) -> list[int]:
 
 
 def _adjusted(
-    state: State, keyframes: frozenset[int], number: int, scale_sigma: float, config: Config
+    state: State, representatives: _Representatives, number: int, scale_sigma: float, config: Config
 ) -> tuple[State, float]:
     """Corrects the cameras of some rooms, and the scale, which are then to be settled again.
+
+    A view that another represents moves as that one does.
 
     Returns:
         What is known now, and how far the corrections moved a camera or a wall at most.
     """
-    chosen = _holding(state, keyframes)
-    views = _views(state, chosen)
+    chosen = _holding(state, representatives)
+    views = _looked_at(state, chosen, representatives)
     place = {view.index: k for k, view in enumerate(views)}
     outlined = [
-        ([place[view.index] for view in state.rooms[k].views], shape.polygon)
+        ([place[v.index] for v in state.rooms[k].views if v.index in place], shape.polygon)
         for k in chosen
         if (shape := state.rooms[k].shape) is not None and shape.polygon is not None
     ]
@@ -207,12 +230,13 @@ def _adjusted(
     )
     cameras = list(state.cameras)
     moved = 0.0
-    for view, new in zip(views, found.corrections, strict=True):
-        old = cameras[view.index].correction
+    for index, representative in representatives.items():
+        k = place[representative]
+        old, new = cameras[index].correction, found.corrections[k]
         wall = abs(new.turn - old.turn) + abs(new.factor - old.factor)
         moved = max(moved, math.dist(new.shift, old.shift), wall * _WALL_CH)
-        covariance = found.covariances.get(place[view.index])
-        cameras[view.index] = replace(cameras[view.index], correction=new, covariance=covariance)
+        covariance = found.covariances.get(k) if index == representative else None
+        cameras[index] = replace(cameras[index], correction=new, covariance=covariance)
     return replace(state, cameras=tuple(cameras), stretch=found.stretch), moved
 
 
@@ -224,6 +248,13 @@ def _views(state: State, chosen: Sequence[int]) -> list[RegisteredLayout]:
     """Views of some rooms in the order of the walk, where the odometry has them."""
     views = (view for k in chosen for view in state.rooms[k].views)
     return sorted(views, key=lambda view: view.index)
+
+
+def _looked_at(
+    state: State, chosen: Sequence[int], representatives: _Representatives
+) -> list[RegisteredLayout]:
+    """The representatives among the views of some rooms, in the order of the walk."""
+    return [view for view in _views(state, chosen) if representatives[view.index] == view.index]
 
 
 def carried(state: State, index: int) -> tuple[PlacedCamera, ...]:
@@ -250,39 +281,47 @@ def carried(state: State, index: int) -> tuple[PlacedCamera, ...]:
 
 
 def _regrouped(
-    state: State, keyframes: frozenset[int], config: Config, *, keep: bool = False
+    state: State, representatives: _Representatives, config: Config, *, keep: bool = False
 ) -> State:
     """Tells the views of some rooms apart anew and shapes the rooms that they are of.
 
-    A room that comes out keeps the number of the room that most of its views were in; where two
-    claim one number, the one with more of its views has it, the other gets a new one. With `keep`
-    the views stay together as they are.
+    A view is of the room of that which represents it. A room that comes out keeps the number of the
+    room that most of its views were in; where two claim one number, the one with more of its views
+    has it, the other gets a new one. With `keep` the views stay together as they are.
     """
-    chosen = _holding(state, keyframes)
+    chosen = _holding(state, representatives)
     before = {view.index: state.rooms[k].number for k in chosen for view in state.rooms[k].views}
-    raw = _views(state, chosen)
+    raw = _looked_at(state, chosen, representatives)
     views = CorrectedLayouts(raw, [state.cameras[view.index].correction for view in raw])
     place = {view.index: k for k, view in enumerate(raw)}
-    known = [[place[view.index] for view in state.rooms[k].views] for k in chosen]
+    rooms_before = ([v.index for v in state.rooms[k].views] for k in chosen)
+    known = [[place[index] for index in own if index in place] for own in rooms_before]
     planned = plan_rooms(views, config, known if keep else None)
+    spoken_for: dict[int, list[RegisteredLayout]] = {}
+    for view in _views(state, chosen):
+        spoken_for.setdefault(representatives[view.index], []).append(view)
     used = max(room.number for room in state.rooms)
-    claims = [[before[raw[k].index] for k in room.members] for room in planned]
+    members = [
+        sorted((v for k in room.members for v in spoken_for[raw[k].index]), key=lambda v: v.index)
+        for room in planned
+    ]
+    claims = [[before[view.index] for view in own] for own in members]
     old = {state.rooms[k].number: state.rooms[k] for k in chosen}
     level = state.rooms[chosen[0]].level
     made = []
-    for room, number in zip(planned, _numbers(claims, used), strict=True):
-        own = sorted(room.members)
+    for room, own, number in zip(planned, members, _numbers(claims, used), strict=True):
         was = old.get(number)
-        if was is not None and [view.index for view in was.views] == [raw[k].index for k in own]:
+        if was is not None and [v.index for v in was.views] == [v.index for v in own]:
             made.append(replace(was, shape=room.shape))
             continue
+        moved = [state.cameras[view.index].correction.apply(view) for view in own]
         made.append(
             RoomState(
                 number,
-                _density([views[k] for k in own], config),
+                _density(moved, config),
                 (),
                 (),
-                views=tuple(raw[k] for k in own),
+                views=tuple(own),
                 level=level,
                 shape=room.shape,
                 away=-1 if was is None else was.away,
@@ -363,7 +402,7 @@ def _density(views: Sequence[RegisteredLayout], config: Config) -> RoomDensity:
     return density
 
 
-def _told(before: State, now: State, keyframes: frozenset[int]) -> tuple[Event, ...]:
+def _told(before: State, now: State, keyframes: Collection[int]) -> tuple[Event, ...]:
     """What changed in the rooms that hold some views."""
     events: list[Event] = []
     moved = sum(before.cameras[k].room != now.cameras[k].room for k in keyframes)

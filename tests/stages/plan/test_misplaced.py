@@ -7,7 +7,7 @@ import pytest
 
 from panoplan.config import Config
 from panoplan.simulate.scene import simulate_flat
-from panoplan.stages.plan.misplaced import misplaced
+from panoplan.stages.plan.misplaced import is_tour, misplaced
 from panoplan.stages.registration import cast, register
 from panoplan.types.view import Correction
 
@@ -68,6 +68,23 @@ def test_a_walk_is_not_examined():
     views = _views(scene)
     rooms = np.array(scene.keyframe_rooms)
     assert _found(_with_room_moved(views, rooms, rooms[0], (1.2, 1.1))) == ()
+
+
+def test_a_walk_through_large_halls_is_no_tour_however_far_its_keyframes_are_apart():
+    def large(views, factor):
+        return [
+            replace(
+                view,
+                camera=factor * view.camera,
+                boundary=factor * view.boundary,
+            )
+            for view in views
+        ]
+
+    walk, (tour, _) = _views(simulate_flat(3, "mild", metres_per_su=1.0)), _tour(3)
+    for factor in (0.5, 1.0, 5.0):
+        assert not is_tour(large(walk, factor), CONFIG.misplaced)
+        assert is_tour(large(tour, factor), CONFIG.misplaced)
 
 
 @pytest.mark.parametrize("count", [0, 1, 2])

@@ -21,7 +21,7 @@ from panoplan.types.view import Correction, RegisteredLayout
 
 @dataclass(frozen=True)
 class Stretch:
-    """What is known of the scale of the odometry's steps.
+    """What is known of the scale of the odometry's first steps.
 
     Attributes:
         factor: on the steps, to begin with.
@@ -38,7 +38,7 @@ class Adjusted:
 
     Attributes:
         corrections: of each view.
-        stretch: factor on the odometry's steps.
+        stretch: factor on the odometry's first steps.
         covariances: (3, 3) of (x, y, turn) of the middle view of each room, by index of the view:
             how well it is known where the room lies.
     """
@@ -73,14 +73,12 @@ class _Walk:
         cameras: (V, 2) positions.
         steps: (V − 1,) way between them.
         first: (3,) x, y and turn at which the first camera stays.
-        stretch: log of the factor on its steps, unknown.
-        prior: of that factor.
+        prior: of the factor on its first steps.
     """
 
     cameras: FloatArray
     steps: FloatArray
     first: FloatArray
-    stretch: float
     prior: Stretch
 
 
@@ -105,12 +103,11 @@ def adjust(
 ) -> Adjusted:
     """Moves cameras and walls until the layouts agree with one another and with the odometry.
 
-    Unknown are each camera's position, heading and the factor of its ranges, the line of each
-    wall, and by how much the odometry's steps are too short or too long together. Columns near a
-    wall of their room pull at it, robustly; from camera to camera the odometry holds, and the
-    first one stays. How much the odometry errs is taken from the data: the multiple of the
-    configured sigmas with most evidence (Laplace's approximation), so that true poses stay where
-    they are.
+    Unknown are each camera's position, heading, the factor of its ranges and that of the odometry's
+    step from it, which changes slowly, and the line of each wall. Columns near a wall of their room
+    pull at it, robustly; from camera to camera the odometry holds, and the first one stays. How
+    much the odometry errs is taken from the data: the multiple of the configured sigmas with most
+    evidence (Laplace's approximation), so that true poses stay where they are.
 
     Args:
         views: in the order of the walk, where the odometry has them.
@@ -132,26 +129,22 @@ def adjust(
     count = len(views)
     if len(pieces.view) == 0 or count < 2:
         return Adjusted(tuple(start), stretch.factor, {})
-    state = np.array([(*c.shift, c.turn, np.log(c.factor)) for c in start])
-    walk = _Walk(
-        np.array([view.camera for view in views]),
-        np.diff(ways),
-        state[0, :3].copy(),
-        float(np.log(stretch.factor)),
-        stretch,
-    )
+    stretched = np.log(stretch.factor)
+    state = np.array([(*c.shift, c.turn, np.log(c.factor), stretched) for c in start])
+    cameras = np.array([view.camera for view in views])
+    walk = _Walk(cameras, np.diff(ways), state[0, :3].copy(), stretch)
     best, falling = -np.inf, 0
-    chosen, found, stretched = state, None, stretch.factor
+    chosen, found = state, None
     for multiple in config.odometry_multiples:
         for _ in range(config.iterations):
             system = _system(state, walls, walk, pieces, faces, multiple, config)
-            state, walls, walk = _moved(state, walls, walk, system.solve())
+            state, walls = _moved(state, walls, system.solve())
         system = _system(state, walls, walk, pieces, faces, multiple, config)
         evidence = system.evidence()
-        evidence -= 3 * (count - 1) * np.log(multiple)
+        evidence -= 4 * (count - 1) * np.log(multiple)
         if evidence > best:
             best, falling = evidence, 0
-            chosen, found, stretched = state, system, float(np.exp(walk.stretch))
+            chosen, found = state, system
         else:
             falling += 1
         if falling == _FALLING:
@@ -161,12 +154,15 @@ def adjust(
     return Adjusted(
         tuple(
             Correction((float(x), float(y)), float(turned), float(np.exp(factor)))
-            for x, y, turned, factor in chosen
+            for x, y, turned, factor, _ in chosen
         ),
-        stretched,
-        dict(zip(middles, found.covariances(4 * np.array(middles)), strict=True)),
+        float(np.exp(chosen[0, 4])),
+        dict(zip(middles, found.covariances(_VIEW * np.array(middles)), strict=True)),
     )
 
+
+_VIEW = 5
+"""Unknowns of a view: x, y, turn, log of the factor on its ranges, of that on the step from it."""
 
 _FALLING = 2
 """The evidence has one peak: after so many falls it is behind."""
@@ -263,13 +259,12 @@ def _piece(
     return ends, float(np.sqrt(2.0 * np.mean(sigma**2) / independent))
 
 
-def _moved(
-    state: FloatArray, walls: _Walls, walk: _Walk, step: FloatArray
-) -> tuple[FloatArray, _Walls, _Walk]:
-    views = step[: state.size].reshape(-1, 4)
-    lines = step[state.size : -1].reshape(-1, 2)
-    moved = replace(walls, angle=walls.angle + lines[:, 0], offset=walls.offset + lines[:, 1])
-    return state + views, moved, replace(walk, stretch=walk.stretch + float(step[-1]))
+def _moved(state: FloatArray, walls: _Walls, step: FloatArray) -> tuple[FloatArray, _Walls]:
+    views = step[: state.size].reshape(-1, _VIEW)
+    lines = step[state.size :].reshape(-1, 2)
+    return state + views, replace(
+        walls, angle=walls.angle + lines[:, 0], offset=walls.offset + lines[:, 1]
+    )
 
 
 def _system(
@@ -282,7 +277,7 @@ def _system(
     config: AdjustConfig,
 ) -> _System:
     """All residuals, linearised."""
-    system = _System(state.size + 2 * len(walls.angle) + 1)
+    system = _System(state.size + 2 * len(walls.angle))
     _add_walls(system, state, walls, walk.cameras, pieces, config)
     _add_odometry(system, state, walk, multiple, config)
     _add_faces(system, state.size, walls, faces, config)
@@ -389,7 +384,7 @@ def _add_walls(
     weight = 1.0 / np.sqrt(1.0 + (over / limit) ** 2)
     base = state.size
     columns = np.concatenate(
-        [4 * view[:, None] + np.arange(4), base + 2 * wall[:, None] + np.arange(2)], axis=1
+        [_VIEW * view[:, None] + np.arange(4), base + 2 * wall[:, None] + np.arange(2)], axis=1
     )
     system.add(
         np.repeat(columns, 2, axis=0),
@@ -412,27 +407,28 @@ def _add_odometry(
     way = np.sqrt(np.maximum(walk.steps, _SHORTEST_CH))
     weight = 1.0 / (multiple * config.odometry_ch * way)
     before, after = np.arange(count - 1), np.arange(1, count)
-    c, s = (np.exp(walk.stretch) * f(state[:-1, 2]) for f in (np.cos, np.sin))
+    stretch = np.exp(state[:-1, 4])
+    c, s = stretch * np.cos(state[:-1, 2]), stretch * np.sin(state[:-1, 2])
     turned = np.stack([c * step[:, 0] - s * step[:, 1], s * step[:, 0] + c * step[:, 1]], axis=-1)
     slip = state[1:, :2] - state[:-1, :2] - (turned - step)
     by_turn = np.stack([turned[:, 1], -turned[:, 0]], axis=-1)
     ones = np.ones(count - 1)
     for k in (0, 1):
-        last = np.full(count - 1, system.size - 1)
-        columns = np.stack([4 * before + k, 4 * after + k, 4 * before + 2, last], axis=1)
+        columns = _VIEW * np.stack([before, after, before, before], axis=1) + (k, k, 2, 4)
         jacobian = np.stack([-ones, ones, by_turn[:, k], -turned[:, k]], axis=1)
         _add(system, columns, weight[:, None] * jacobian, weight * slip[:, k])
-    weight = 1.0 / (multiple * np.deg2rad(config.odometry_deg) * way)
-    columns = np.stack([4 * before + 2, 4 * after + 2], axis=1)
-    jacobian = np.stack([-weight, weight], axis=1)
-    _add(system, columns, jacobian, weight * (state[1:, 2] - state[:-1, 2]))
+    for unknown, sigma in ((2, np.deg2rad(config.odometry_deg)), (4, config.odometry_scale)):
+        weight = 1.0 / (multiple * sigma * way)
+        columns = _VIEW * np.stack([before, after], axis=1) + unknown
+        change = state[1:, unknown] - state[:-1, unknown]
+        _add(system, columns, np.stack([-weight, weight], axis=1), weight * change)
     factor = np.full((count, 1), 1.0 / config.factor_sigma)
     every = np.arange(count)[:, None]
-    _add(system, 4 * every + 3, factor, state[:, 3] / config.factor_sigma)
+    _add(system, _VIEW * every + 3, factor, state[:, 3] / config.factor_sigma)
     sure = 1.0 / (walk.prior.sigma or _HELD)
     about = 0.0 if walk.prior.sigma else np.log(walk.prior.factor)
-    off = np.array([sure * (walk.stretch - about)])
-    _add(system, np.array([[system.size - 1]]), np.array([[sure]]), off)
+    off = sure * (state[:1, 4] - about)
+    _add(system, np.array([[4]]), np.array([[sure]]), off)
     first = np.full((3, 1), 1.0 / _FIRST)
     _add(system, np.arange(3)[:, None], first, (state[0, :3] - walk.first) / _FIRST)
 

@@ -54,7 +54,7 @@ def misplaced(
 
     Source: docs/deviations.md, "Past the paper".
     """
-    if len(views) < 3 or not _tour(views, config):
+    if len(views) < 3 or not is_tour(views, config):
         return ()
     tour = _Tour.of(views, config, grouping)
     found: list[Misplaced] = []
@@ -71,10 +71,19 @@ def misplaced(
     return _merged(found)
 
 
-def _tour(views: Sequence[RegisteredLayout], config: MisplacedConfig) -> bool:
-    """Whether the cameras stand far from one another."""
+def is_tour(views: Sequence[RegisteredLayout], config: MisplacedConfig) -> bool:
+    """Whether the cameras stand farther from one another than a walk's keyframes do.
+
+    Args:
+        views: in the order of the walk or the tour.
+        config: settings.
+    """
+    if len(views) < 2:
+        return False
     cameras = np.array([view.camera for view in views])
-    return bool(np.median(np.hypot(*np.diff(cameras, axis=0).T)) > config.min_step_ch)
+    ranges = [np.nanmedian(np.hypot(*(view.boundary - view.camera).T)) for view in views]
+    step = np.median(np.hypot(*np.diff(cameras, axis=0).T))
+    return bool(step > config.min_step * np.nanmedian(ranges))
 
 
 @dataclass(frozen=True, eq=False)
