@@ -13,6 +13,9 @@ from panoplan.formats.layout_npz import write_layout_npz
 from panoplan.formats.sequence import write_sequence
 from panoplan.layouts.contract import ModelSpec, Output
 from panoplan.layouts.dense import Dense
+from panoplan.layouts.network.samples import TARGETS, WIDTH
+from panoplan.layouts.network.shards import HELD_OUT_SEED
+from panoplan.types.layout import Layout, Spans
 
 
 class _Teller:
@@ -79,6 +82,41 @@ def test_cameras_outside_of_their_room_are_left_out(folder):
     description["keyframes"][0]["inside"] = False
     (path / "sequence.json").write_text(json.dumps(description))
     assert _measured(path, Dense(truth))["all"]["panoramas"] == 1
+
+
+def test_spans_by_hand(folder):
+    """Doors are in columns 10-19 and 1020-3, and are told in columns 5-14 of half as many."""
+    path, truth = folder
+    spans = Spans(np.array([[10.0, 19.0], [1020.0, 3.0]]), np.empty((0, 2)), np.empty((0, 2)))
+    for file in (path / layouts.TRUE_LAYOUTS).iterdir():
+        write_layout_npz(file, Layout(truth, spans=spans))
+    chance = np.zeros(1024)
+    chance[10:30] = 1
+    found = _measured(path, Dense(truth, chances={"doors": chance, "openings": 0 * chance}))[
+        "spans"
+    ]
+    assert found["doors"]["recall"] == pytest.approx(10 / 18)
+    assert found["doors"]["precision"] == pytest.approx(10 / 20)
+    assert found["openings"] == {"recall": None, "precision": None}
+
+
+def test_the_held_out_renders_of_a_training_are_judged(tmp_path):
+    rows = np.zeros((2, len(TARGETS), WIDTH), dtype=np.float32)
+    floors = [-np.pi / 4, -np.arctan(1 / 0.5)]
+    for k, floor in enumerate(floors):
+        rows[k, 0], rows[k, 1], rows[k, 2] = floor, floor, 0.5
+    rows[0, TARGETS.index("opening"), 100:200] = 1
+    images = np.zeros((2, WIDTH // 2, WIDTH, 3), dtype=np.uint8)
+    for name, array in (("images", images), ("targets", rows)):
+        np.save(tmp_path / f"{name}-{HELD_OUT_SEED:07d}.npy", array)
+        np.save(tmp_path / f"{name}-0000000.npy", array)
+    figures = _measured(tmp_path, Dense(np.full(WIDTH, floors[0])))
+    assert [line["id"] for line in figures["panoramas"]] == ["1000000-0", "1000000-1"]
+    assert figures["with_openings"]["floor_px"]["mean"] == pytest.approx(0, abs=1e-3)
+    # The second stands in a round room of 0.25 π square camera heights.
+    assert figures["in_small_rooms"]["panoramas"] == 1
+    off = (floors[0] - floors[1]) * layouts.ROWS / np.pi
+    assert figures["in_small_rooms"]["floor_px"]["mean"] == pytest.approx(off, rel=1e-4)
 
 
 def test_the_table_tells_it(folder, tmp_path):
