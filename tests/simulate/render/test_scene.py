@@ -14,7 +14,7 @@ from panoplan.simulate.render.looks import draw_look
 from panoplan.simulate.render.mesh import MeshBuilder
 from panoplan.simulate.render.scene import PREVIEW, STILL, Scene
 from panoplan.simulate.render.shell import raise_shell
-from panoplan.simulate.walks import about_y
+from panoplan.simulate.walks import about_y, walk
 
 WIDTH = 256
 
@@ -157,3 +157,27 @@ def test_light_falls_off_from_the_lamp_and_grows_with_its_power():
     assert middle > 2 * corner > 0
     # Lamp and room are symmetric, so is the light.
     np.testing.assert_allclose(grid, grid[::-1], rtol=0.35)
+
+
+def test_nobody_walks_through_a_shut_door():
+    """Every door on the way is open, and its leaf out of the way; others are as they were."""
+    through = 0
+    for seed in range(4):
+        flat = make_flat(seed, rooms=5, area_m2=55, opening_share=0.0)
+        way = walk(flat, np.random.default_rng(seed), step_m=0.25).trajectory
+        places = way.translations[:, [0, 2]]
+        rngs = [np.random.default_rng(9) for _ in range(2)]
+        look = draw_look(np.random.default_rng(seed))
+        without, shell = (
+            raise_shell(flat, look, frozenset(), MeshBuilder(), rng, clear)
+            for rng, clear in zip(rngs, (None, places), strict=True)
+        )
+        through += len(without.shut)
+        line = shapely.LineString(places)
+        walked = {
+            k for k, p in enumerate(flat.passages) if line.intersects(shapely.Polygon(p.area))
+        }
+        assert not shell.shut & walked
+        leaves = shapely.linestrings([leaf for leaf in shell.leaves if np.ptp(leaf, axis=0).any()])
+        assert shapely.distance(leaves, line).min() > 0.12
+    assert through > 0

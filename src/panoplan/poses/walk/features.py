@@ -61,7 +61,7 @@ class Extractor:
     def __init__(
         self,
         limit: int = 1000,
-        peak_threshold: float = 0.003,
+        peak_threshold: float = 0.0015,
         mask: NDArray[np.bool_] | None = None,
     ) -> None:
         pycolmap = load_pycolmap()

@@ -17,6 +17,7 @@ from panoplan.types.pose import Pose
 
 _CAMERA = 1
 _SEED = 0
+_TRIALS = 400
 
 
 class Map:
@@ -163,6 +164,8 @@ def verified(
     options.detect_watermark = False
     options.ransac.random_seed = _SEED
     options.ransac.num_threads = 1
+    # Enough for a third of true matches; most time would go into pairs that have none.
+    options.ransac.max_num_trials = _TRIALS
     told = pycolmap.estimate_two_view_geometry(
         camera, one.points, camera, other.points, pairs, options
     )

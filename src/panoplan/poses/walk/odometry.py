@@ -36,7 +36,7 @@ class OdometrySettings:
     recent: int = 4
     lookups: int = 2
     least_pair_inliers: int = 25
-    least_map_inliers: int = 40
+    least_map_inliers: int = 25
     patience: int = 40
     growth: float = 1.4
 
@@ -161,6 +161,9 @@ class Odometry:
     def _registered_in(self, large: int, members: set[int]) -> list[int]:
         """Registers panoramas in another map, from those it shares points with onwards."""
         known = self._maps[large]
+        # All before any is registered: the map counts what each sees of those registered later.
+        for number in sorted(members):
+            self._tell(known, number)
         moved: list[int] = []
         progress = True
         while progress:
@@ -168,7 +171,6 @@ class Odometry:
             for number in sorted(members - set(moved)):
                 if not any(known.has(n) for n in self._neighbours[number]):
                     continue
-                self._tell(known, number)
                 if known.register(number):
                     moved.append(number)
                     progress = True

@@ -61,7 +61,7 @@ class Scene:
         seed: of its looks, furniture and light.
         quality: how well.
         furnished: 0 for a home without loose furniture, 1 for a full one; drawn where None.
-        clear: (N, 2) plan: where nothing may stand, as people walk there.
+        clear: (N, 2) plan: where nothing may stand and doors are open, as people walk there.
 
     Raises:
         MissingExtraError: the `render` extra is not installed.
@@ -85,7 +85,7 @@ class Scene:
         uses = draw_uses(building, things_rng)
         wet = frozenset(k for k, use in enumerate(uses) if use in ("kitchen", "bath"))
         mesh = MeshBuilder()
-        self.shell: Shell = raise_shell(building, look, wet, mesh, shell_rng)
+        self.shell: Shell = raise_shell(building, look, wet, mesh, shell_rng, clear)
         self.furniture: Furniture = furnish(
             building, uses, self.shell.leaves, look, density, free, mesh, things_rng
         )

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
+import shapely
 
 from panoplan.simulate.buildings import Building, Passage
 from panoplan.simulate.render.looks import Look, tiled
@@ -13,6 +14,8 @@ from panoplan.simulate.render.mesh import UP, MeshBuilder, Rectangle
 from panoplan.types.arrays import FloatArray
 
 _LEAF_THICK_M = 0.04
+_IN_A_DOOR_M, _BEFORE_A_DOOR_M = 0.5, 1.0
+_CLEAR_OF_A_LEAF_M = 0.15
 _WIDE_M = 2.5
 
 
@@ -62,6 +65,7 @@ def raise_shell(
     wet: frozenset[int],
     mesh: MeshBuilder,
     rng: np.random.Generator,
+    walked: FloatArray | None = None,
 ) -> Shell:
     """Adds a building's own surfaces.
 
@@ -71,6 +75,7 @@ def raise_shell(
         wet: indices of the rooms with tiles: kitchens and baths.
         mesh: what they are added to.
         rng: of heights, frames, leaves and which paint goes where.
+        walked: (N, 2) plan: where a camera is; doors there are open, and out of its way.
 
     Returns:
         What the rest needs to know.
@@ -96,7 +101,7 @@ def raise_shell(
             for side in (0, 1):
                 _frame(passage, side, heights[k], frame, look.trim, mesh)
         if passage.kind == "door":
-            leaf = _leaf(passage, heights[k], look.leaf, mesh, rng)
+            leaf = _leaf(passage, heights[k], look.leaf, mesh, rng, _through(passage, walked))
             if leaf is None:
                 shut.add(k)
             else:
@@ -218,23 +223,27 @@ def _frame(
     )
 
 
+def _through(passage: Passage, walked: FloatArray | None) -> FloatArray:
+    """The places of (N, 2) before a passage that somebody walks through; none if nobody does."""
+    if walked is None or not len(walked):
+        return np.empty((0, 2))
+    away = shapely.distance(shapely.Polygon(passage.area), shapely.points(walked))
+    return walked[away < (_BEFORE_A_DOOR_M if away.min() < _IN_A_DOOR_M else 0.0)]
+
+
 def _leaf(
-    passage: Passage, height: float, look: Material, mesh: MeshBuilder, rng: np.random.Generator
+    passage: Passage,
+    height: float,
+    look: Material,
+    mesh: MeshBuilder,
+    rng: np.random.Generator,
+    walked: FloatArray,
 ) -> FloatArray | None:
     """Hangs a door, or none; (2, 2) hinge and edge of an open leaf, None where it is shut."""
-    side, hinge = int(rng.integers(2)), int(rng.integers(2))
-    start, other = passage.faces[side, hinge], passage.faces[side, 1 - hinge]
-    across = (other - start) / passage.width
-    into_room = -passage.outward if side == 0 else passage.outward
-    kind = rng.random()
-    if kind < 0.15:
+    side, hinge, angle = _hung(passage, walked, rng)
+    start, across, into_room = _hinge(passage, side, hinge)
+    if angle is None:
         return np.array([start, start])
-    if kind < 0.35:
-        angle = 0.0
-    elif kind < 0.85:
-        angle = float(np.deg2rad(rng.uniform(70, 110)))
-    else:
-        angle = float(np.deg2rad(rng.uniform(15, 70)))
     along = np.cos(angle) * across + np.sin(angle) * into_room
     inward = np.cos(angle) * into_room - np.sin(angle) * across
     origin = start + 0.01 * into_room * (angle > 0) - _LEAF_THICK_M * inward
@@ -258,6 +267,44 @@ def _leaf(
         knob,
     )
     return None if angle == 0.0 else np.array([start, start + passage.width * along])
+
+
+def _hung(
+    passage: Passage, walked: FloatArray, rng: np.random.Generator
+) -> tuple[int, int, float | None]:
+    """Side and hinge of a leaf and how far it is open, rad: 0 shut, None where there is none."""
+    side, hinge = int(rng.integers(2)), int(rng.integers(2))
+    kind = rng.random()
+    if kind < 0.15:
+        return side, hinge, None
+    if len(walked):
+        return _out_of_the_way(passage, walked, rng)
+    if kind < 0.35:
+        return side, hinge, 0.0
+    return side, hinge, float(np.deg2rad(rng.uniform(*((70, 110) if kind < 0.85 else (15, 70)))))
+
+
+def _hinge(passage: Passage, side: int, hinge: int) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """A jamb of a passage, and the unit directions to the other one and into the room."""
+    start, other = passage.faces[side, hinge], passage.faces[side, 1 - hinge]
+    into_room = -passage.outward if side == 0 else passage.outward
+    return start, (other - start) / passage.width, into_room
+
+
+def _out_of_the_way(
+    passage: Passage, walked: FloatArray, rng: np.random.Generator
+) -> tuple[int, int, float | None]:
+    """The way to hang an open leaf that is the farthest from a walk; none where all are near."""
+    best: tuple[int, int, float | None] = (0, 0, None)
+    farthest = _CLEAR_OF_A_LEAF_M
+    for side, hinge in ((0, 0), (0, 1), (1, 0), (1, 1)):
+        angle = float(np.deg2rad(rng.uniform(80, 110)))
+        start, across, into_room = _hinge(passage, side, hinge)
+        edge = start + passage.width * (np.cos(angle) * across + np.sin(angle) * into_room)
+        away = shapely.MultiPoint(walked).distance(shapely.LineString([start, edge]))
+        if away > farthest:
+            best, farthest = (side, hinge, angle), away
+    return best
 
 
 def _window(
