@@ -977,6 +977,14 @@ class AdjustConfig:
         low=1e-3,
         high=90.0,
     )
+    gap_sigma_ch: float = _setting(
+        0.03,
+        "Standard deviation of what lies between the two faces of a wall of a tour's rooms about "
+        "a thickness that all have in common, and of that about `partition.thickness_ch`; robust.",
+        unit="camera heights",
+        low=0.001,
+        high=1.0,
+    )
     odometry_ch: float = _setting(
         0.02,
         "Standard deviation of the odometry's position after one camera height of way; it grows "

@@ -12,10 +12,10 @@ import numpy as np
 from panoplan.config import Config
 from panoplan.estimator.state import Composition, PlacedCamera, RoomState, State, room_id
 from panoplan.stages import rooms
-from panoplan.stages.plan.adjust import Stretch, adjust
+from panoplan.stages.plan.adjust import Faces, Stretch, adjust
 from panoplan.stages.plan.apertures import apertures, stretches
 from panoplan.stages.plan.floorplan import plan_rooms
-from panoplan.stages.plan.misplaced import misplaced
+from panoplan.stages.plan.misplaced import is_tour, misplaced
 from panoplan.stages.plan.partition import facing_walls, partition
 from panoplan.types.events import CamerasMisplaced, Event, RoomShaped, RoomsRegrouped
 from panoplan.types.plan import Skipped
@@ -218,13 +218,16 @@ def _adjusted(
         for k in chosen
         if (shape := state.rooms[k].shape) is not None and shape.polygon is not None
     ]
+    # What odometry holds, walls of one thickness would rather bend.
+    gap = config.partition.thickness_ch if is_tour(views, config.misplaced) else None
+    faces = Faces(*facing_walls([ring for _, ring in outlined], config.partition), gap)
     found = adjust(
         views,
         state.ch_per_su * np.array([state.cameras[view.index].way_su for view in views]),
         outlined,
         [state.cameras[view.index].correction for view in views],
         Stretch(state.stretch, scale_sigma),
-        facing_walls([ring for _, ring in outlined], config.partition),
+        faces,
         config.adjust.reach_ch / (1 + number),
         config.adjust,
     )

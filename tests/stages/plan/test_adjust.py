@@ -7,7 +7,7 @@ import pytest
 from tests.scenes import L_SHAPE, exact_layout, yaw
 
 from panoplan.config import Config
-from panoplan.stages.plan.adjust import Stretch, adjust
+from panoplan.stages.plan.adjust import Faces, Stretch, adjust
 from panoplan.stages.registration import cast, register
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.pose import Pose
@@ -16,7 +16,7 @@ from panoplan.types.view import Correction
 CONFIG = Config()
 COUNT = 24
 KNOWN = Stretch()
-NO_FACES = (np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64))
+NO_FACES = Faces(np.empty(0, dtype=np.int64), np.empty(0, dtype=np.int64))
 AROUND = np.array([[-2.0, -1.0], [2.0, -1.0], [-1.5, -1.2], [-1.5, 1.2], [-2.0, -0.5]])
 
 
@@ -142,3 +142,32 @@ def test_without_walls_nothing_moves():
     found = adjust(views, np.arange(COUNT), [], start, Stretch(1.1), NO_FACES, 0.3, CONFIG.adjust)
     assert list(found.corrections) == start
     assert found.stretch == 1.1
+
+
+def test_walls_of_a_tour_have_a_thickness_in_common():
+    """Of two rooms side by side the second was placed 0.15 too far away."""
+    first = np.array([[0.0, 0.0], [3.0, 0.0], [3.0, 2.5], [0.0, 2.5]])
+    second = first + [3.08, 0.0]
+    true = np.array([[1.0, 1.0], [2.0, 1.5], [4.1, 1.2], [5.2, 1.0]])
+    told = true + np.array([[0.0, 0.0], [0.0, 0.0], [0.15, 0.0], [0.15, 0.0]])
+    views = []
+    for k, (at, here) in enumerate(zip(true, told, strict=True)):
+        layout = exact_layout(first if k < 2 else second, at, yaw(0.0))
+        keyframe = Keyframe(f"kf{k}", Pose(yaw(0.0), [here[0], 0.0, here[1]]), layout)
+        view = register(cast(keyframe, k, np.zeros(3), np.eye(2), CONFIG.registration), 1.0)
+        views.append(replace(view, sigmas=0.2 * view.sigmas))
+    ways = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(told, axis=0).T))])
+    rooms = [([0, 1], first), ([2, 3], second + [0.15, 0.0])]
+    # The second wall of the first room faces the last of the second.
+    pair = np.array([1]), np.array([7])
+    # How much stills are placed wrong is known here: two rooms are too few to tell.
+    config = replace(CONFIG.adjust, odometry_multiples=(4.0,))
+    off = {}
+    for gap in (None, 0.08):
+        faces = Faces(*pair, gap)
+        start = [Correction()] * 4
+        found = adjust(views, ways, rooms, start, KNOWN, faces, 0.3, config)
+        moved = [c.apply(view) for c, view in zip(found.corrections, views, strict=True)]
+        off[gap] = moved[3].camera[0] - true[3, 0]
+    assert off[None] == pytest.approx(0.15, abs=0.02)
+    assert abs(off[0.08]) < 0.05

@@ -33,6 +33,22 @@ class Stretch:
 
 
 @dataclass(frozen=True, eq=False)
+class Faces:
+    """Walls that may be the two faces of one: they are parallel, robustly.
+
+    Attributes:
+        one: (F,) index of a wall, counted through room by room.
+        other: (F,) index of that across.
+        gap_ch: distance that all faces have in common, to begin with, camera heights; None where
+            it is no prior.
+    """
+
+    one: IntArray
+    other: IntArray
+    gap_ch: float | None = None
+
+
+@dataclass(frozen=True, eq=False)
 class Adjusted:
     """What an adjustment found.
 
@@ -89,6 +105,8 @@ class _Walls:
     middle: FloatArray
     angle: FloatArray
     offset: FloatArray
+    gap: float
+    """Between the two faces of one wall."""
 
 
 def adjust(
@@ -97,7 +115,7 @@ def adjust(
     rooms: Sequence[tuple[Sequence[int], FloatArray]],
     start: Sequence[Correction],
     stretch: Stretch,
-    faces: tuple[IntArray, IntArray],
+    faces: Faces,
     reach_ch: float,
     config: AdjustConfig,
 ) -> Adjusted:
@@ -115,8 +133,7 @@ def adjust(
         rooms: indices of the views of each room, and its outline (N, 2), as found after `start`.
         start: corrections to begin with; that of the first view is kept.
         stretch: what is known of the scale of the odometry's steps.
-        faces: indices of walls, counted through room by room, that may be the two faces of one:
-            they are parallel, robustly.
+        faces: of the rooms' walls.
         reach_ch: columns this near to a wall take part.
         config: settings.
 
@@ -126,6 +143,7 @@ def adjust(
     Source: docs/deviations.md, "Past the paper".
     """
     pieces, walls = _pieces(views, rooms, start, reach_ch, config)
+    walls = replace(walls, gap=faces.gap_ch or 0.0)
     count = len(views)
     if len(pieces.view) == 0 or count < 2:
         return Adjusted(tuple(start), stretch.factor, {})
@@ -202,7 +220,7 @@ def _pieces(
             np.array(points).reshape(-1, 2, 2),
             np.array(sigmas),
         ),
-        _Walls(np.array(middles).reshape(-1, 2), np.array(angles), np.zeros(len(angles))),
+        _Walls(np.array(middles).reshape(-1, 2), np.array(angles), np.zeros(len(angles)), 0.0),
     )
 
 
@@ -261,9 +279,12 @@ def _piece(
 
 def _moved(state: FloatArray, walls: _Walls, step: FloatArray) -> tuple[FloatArray, _Walls]:
     views = step[: state.size].reshape(-1, _VIEW)
-    lines = step[state.size :].reshape(-1, 2)
+    lines = step[state.size : -1].reshape(-1, 2)
     return state + views, replace(
-        walls, angle=walls.angle + lines[:, 0], offset=walls.offset + lines[:, 1]
+        walls,
+        angle=walls.angle + lines[:, 0],
+        offset=walls.offset + lines[:, 1],
+        gap=walls.gap + float(step[-1]),
     )
 
 
@@ -272,12 +293,12 @@ def _system(
     walls: _Walls,
     walk: _Walk,
     pieces: _Pieces,
-    faces: tuple[IntArray, IntArray],
+    faces: Faces,
     multiple: float,
     config: AdjustConfig,
 ) -> _System:
     """All residuals, linearised."""
-    system = _System(state.size + 2 * len(walls.angle))
+    system = _System(state.size + 2 * len(walls.angle) + 1)
     _add_walls(system, state, walls, walk.cameras, pieces, config)
     _add_odometry(system, state, walk, multiple, config)
     _add_faces(system, state.size, walls, faces, config)
@@ -379,18 +400,17 @@ def _add_walls(
         [normal[..., 0] * ones, normal[..., 1] * ones, by_turn, by_factor, by_angle, -ones],
         axis=-1,
     )
-    over = residual / pieces.sigma[:, None]
-    limit = config.robust_sigmas
-    weight = 1.0 / np.sqrt(1.0 + (over / limit) ** 2)
     base = state.size
     columns = np.concatenate(
         [_VIEW * view[:, None] + np.arange(4), base + 2 * wall[:, None] + np.arange(2)], axis=1
     )
-    system.add(
+    sigma = pieces.sigma[:, None]
+    _add_robustly(
+        system,
         np.repeat(columns, 2, axis=0),
-        ((weight / pieces.sigma[:, None])[..., None] * jacobian).reshape(-1, 6),
-        (weight * over).ravel(),
-        float((limit**2 * np.log1p((over / limit) ** 2)).sum()),
+        (jacobian / sigma[..., None]).reshape(-1, 6),
+        (residual / sigma).ravel(),
+        config,
     )
 
 
@@ -434,20 +454,43 @@ def _add_odometry(
 
 
 def _add_faces(
+    system: _System, first: int, walls: _Walls, faces: Faces, config: AdjustConfig
+) -> None:
+    one, other = faces.one, faces.other
+    ones = np.ones(len(one))
+    columns = first + 2 * np.stack([one, other], axis=1)
+    over = line_difference(walls.angle[one], walls.angle[other]) / np.deg2rad(config.faces_deg)
+    jacobian = np.stack([ones, -ones], axis=1) / np.deg2rad(config.faces_deg)
+    _add_robustly(system, columns, jacobian, over, config)
+    if faces.gap_ch is None:
+        return
+    normal = np.stack([np.cos(walls.angle), np.sin(walls.angle)], axis=-1)
+    across = np.stack([-normal[one, 1], normal[one, 0]], axis=-1)
+    # From the middle of the one to that of the other, where it is now.
+    away = walls.middle[other] + walls.offset[other, None] * normal[other] - walls.middle[one]
+    gap = (normal[one] * away).sum(axis=-1) - walls.offset[one]
+    common = np.full(len(one), system.size - 1)
+    columns = np.stack([columns[:, 0], columns[:, 0] + 1, columns[:, 1] + 1, common], axis=1)
+    facing = (normal[one] * normal[other]).sum(axis=-1)
+    jacobian = np.stack([(across * away).sum(axis=-1), -ones, facing, -ones], axis=1)
+    sigma = config.gap_sigma_ch
+    _add_robustly(system, columns, jacobian / sigma, (gap - walls.gap) / sigma, config)
+    about = np.array([(walls.gap - faces.gap_ch) / sigma])
+    _add(system, np.array([[system.size - 1]]), np.array([[1.0 / sigma]]), about)
+
+
+def _add_robustly(
     system: _System,
-    first: int,
-    walls: _Walls,
-    faces: tuple[IntArray, IntArray],
+    columns: IntArray,
+    jacobian: FloatArray,
+    over: FloatArray,
     config: AdjustConfig,
 ) -> None:
-    one, other = faces
-    sigma, limit = np.deg2rad(config.faces_deg), config.robust_sigmas
-    over = line_difference(walls.angle[one], walls.angle[other]) / sigma
+    """Adds residuals over sigma of which large ones pull less and less (Cauchy)."""
+    limit = config.robust_sigmas
     weight = 1.0 / np.sqrt(1.0 + (over / limit) ** 2)
-    columns = first + 2 * np.stack([one, other], axis=1)
-    jacobian = np.stack([weight, -weight], axis=1) / sigma
     cost = float((limit**2 * np.log1p((over / limit) ** 2)).sum())
-    system.add(columns, jacobian, weight * over, cost)
+    system.add(columns, weight[:, None] * jacobian, weight * over, cost)
 
 
 def _add(system: _System, columns: IntArray, jacobian: FloatArray, residual: FloatArray) -> None:

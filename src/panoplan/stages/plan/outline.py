@@ -12,7 +12,7 @@ from contourpy import contour_generator
 from scipy import ndimage
 
 from panoplan.config import FusionConfig, OutlineConfig
-from panoplan.geometry.polygons import signed_area
+from panoplan.geometry.polygons import signed_area, untangled
 from panoplan.geometry.polyline import resampled, straight_pieces
 from panoplan.stages.plan.fusion import Floor
 from panoplan.stages.plan.sight import Sights
@@ -91,9 +91,10 @@ def outline(floor: Floor, views: Sights, config: OutlineConfig, fusion: FusionCo
     walls = _walls(pieces, columns, config)
     ring, sigmas = _corners(walls)
     if not _is_simple(ring):
-        # Where fitted walls cross, the outline of the field stands.
-        ring, sigmas = _corners([_through(piece) for piece in pieces])
-        if not _is_simple(ring):
+        # Walls of a narrow notch may cross: it ends there.
+        ring, sigmas = _untangled(ring, sigmas)
+        enclosed = signed_area(ring) if len(ring) else 0.0
+        if enclosed < _ENCLOSED * floor.mask.sum() * fusion.cell_ch**2:
             return RoomShape(None, "its walls do not close")
     holes = []
     labels, count = ndimage.label(floor.holes)
@@ -109,6 +110,17 @@ def outline(floor: Floor, views: Sights, config: OutlineConfig, fusion: FusionCo
         ):
             holes.append(hole)
     return RoomShape(ring, None, sigmas=sigmas, holes=tuple(holes))
+
+
+_ENCLOSED = 0.8
+"""Walls that enclose less than this share of the floor are not around it."""
+
+
+def _untangled(ring: FloatArray, sigmas: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """A ring without the loops where it crosses itself; walls from there on are not fitted."""
+    sigma_at = dict(zip(map(tuple, ring.tolist()), sigmas.tolist(), strict=True))
+    simple = untangled(ring)
+    return simple, np.array([sigma_at.get(tuple(at), np.nan) for at in simple.tolist()])
 
 
 def cut(floor: Floor, config: OutlineConfig, fusion: FusionConfig) -> list[FloatArray]:
