@@ -109,10 +109,34 @@ def test_simulate_writes_whole_mp3d_fpe_scenes(tmp_path, capsys):
     assert furniture.sum() > 1000
 
 
+@pytest.mark.parametrize("kind", ["sequence", "mp3d-fpe"])
+def test_a_house_of_two_storeys_goes_all_the_way(tmp_path, capsys, kind):
+    scene, out = tmp_path / "house" / "0", tmp_path / "plan"
+    words = ["--family", "flat", "--seed", "7", "--storeys", "2", "--stills", "--format", kind]
+    assert main(["simulate", "-o", str(scene), *words, "--quiet"]) == 0
+    truth = read_truth(scene).plan
+    made = simulate_scene("flat", 7, as_stills=True, storeys=2).truth.plan
+    assert [room.level for room in truth.rooms] == [room.level for room in made.rooms]
+    assert truth.levels.floors_m == made.levels.floors_m
+    assert (truth.levels.doors == made.levels.doors) == (kind == "sequence")
+    height = ["--camera-height", f"{made.camera_height_m}"]
+    assert main(["run", str(scene), "-o", str(out), "--quiet", *height]) == 0
+    assert {room.level for room in read_plan(out / "plan.json").rooms} == {0, 1}
+    capsys.readouterr()
+    assert main(["eval", str(out / "plan.json"), str(scene), "--align", "scale"]) == 0
+    assert "(2 of 2 true, 2 predicted)" in capsys.readouterr().out.split("storeys")[1]
+    assert main(["compare", str(out / "plan.json"), str(scene), "--align", "scale",
+                 "-o", str(tmp_path / "both.png")]) == 0  # fmt: skip
+    assert (tmp_path / "both.png").read_bytes().startswith(b"\x89PNG")
+
+
 @pytest.mark.parametrize(
     ("words", "told"),
     [
         (["--family", "flat", "--rooms", "5"], "one of them"),
+        (["--storeys", "2"], "a family"),
+        (["--family", "flat", "--storeys", "9"], "1 to 4"),
+        (["--family", "flat", "--storeys", "2", "--render", "preview"], "one of them"),
         (["--scenes", "0"], "1 to"),
         (["--family", "flat", "--seed", "-1"], "0 or more"),
     ],

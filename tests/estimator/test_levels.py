@@ -100,3 +100,34 @@ def test_stairs_during_the_warm_up_do_not_spoil_the_scale():
     plan, _ = _fed([*below, *stairs, *above], config)
     assert plan.scale.ch_per_su == pytest.approx(1.0, rel=0.01)
     assert [room.level for room in plan.rooms] == [0, 1]
+
+
+def _told(plan, keyframes):
+    """Those of the keyframes that were left out as on stairs."""
+    out = {s.keyframe for s in plan.skipped if "stairs" in s.reason}
+    return [k.id for k in keyframes if k.id in out]
+
+
+def test_a_walk_that_ends_on_stairs_has_no_storey_there():
+    below, stairs, _ = _house()
+    plan, reached = _fed([*below, *stairs])
+    assert reached == []
+    assert [room.level for room in plan.rooms] == [0]
+    assert _told(plan, stairs) == [k.id for k in stairs]
+
+
+def test_a_walk_that_ends_at_the_foot_of_the_stairs_is_back_where_it_was():
+    below, stairs, above = _house()
+    down = _keyframes(RECTANGLE, [[1.0, 0.5]] * 3, [1.1, 0.6, 0.1], 40)
+    plan, reached = _fed([*below, *stairs, *above, *down])
+    assert reached == [1, 0]
+    assert [room.level for room in plan.rooms] == [0, 1]
+    assert _told(plan, down) == [k.id for k in down[:2]]
+    assert down[2].id in plan.rooms[0].keyframes
+
+
+def test_photos_of_a_storey_that_the_walk_ends_on_make_it():
+    below, _, above = _house()
+    plan, reached = _fed([*below, *above[:2]])
+    assert reached == [1]
+    assert {k.id for k in above[:2]} == set(plan.rooms[1].keyframes)

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
-from tests.exporters.storeys import two_storeys
+from tests.exporters.storeys import flat, two_storeys
 from tests.metrics.plans import FLAT, plan, square
 
-from panoplan.exporters.storeys import inner_walls, storeys
+from panoplan.exporters.storeys import bounds, inner_walls, spread, storeys
 
 
 def test_what_is_of_which_storey():
@@ -34,3 +34,28 @@ def test_inner_walls_fill_what_lies_between_rooms():
     gone = inner_walls(whole).area - inner_walls(open_floor).area
     assert gone >= 0.0
     assert np.isfinite(gone)
+
+
+def test_a_drawing_has_storeys_beside_one_another():
+    made = two_storeys()
+    drawn = spread(made, 40.0)
+    assert [room.id for room in drawn.rooms] == [room.id for room in made.rooms]
+    for room, before in zip(drawn.rooms, made.rooms, strict=True):
+        if before.polygon is None:
+            assert room.polygon is None
+            continue
+        shift = [40.0 * before.level, 0.0]
+        assert room.polygon == pytest.approx(before.polygon + shift)
+        assert all(
+            wall.a == pytest.approx(old.a + shift)
+            for wall, old in zip(room.walls, before.walls, strict=True)
+        )
+    up = next(door for door in drawn.doors if door.rooms == ("room_04",))
+    assert up.segment[:, 0] == pytest.approx([42.0, 42.9])
+    low, high = (bounds(storey, np.eye(2)) for storey in storeys(spread(made)))
+    assert low[1][0] < high[0][0]
+
+
+def test_one_storey_is_drawn_where_it_is():
+    same = flat()
+    assert spread(same) is same

@@ -13,7 +13,7 @@ from panoplan.formats.mp3d_fpe import (
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.layout import Layout
 from panoplan.types.pose import Pose, Trajectory
-from panoplan.types.truth import GroundTruth, TruePlan, TrueRoom
+from panoplan.types.truth import GroundTruth, TrueLevels, TruePlan, TrueRoom
 
 # Keyframes are listed out of order; the poses follow the sorted ids 2, 3, 5, 10.
 KEYFRAMES = "10\n2\n5\n3\n"
@@ -210,6 +210,24 @@ def test_read_of_write(tmp_path):
     np.testing.assert_array_equal(again.trajectory.translations, truth.trajectory.translations)
     np.testing.assert_array_equal(again.plan.rooms[0].polygon, truth.plan.rooms[0].polygon)
     np.testing.assert_allclose(again.plan.axis, [0.6, 0.8])
+
+
+def test_storeys_are_ours_to_add(tmp_path):
+    folder = tmp_path / "house" / "0"
+    keyframes, truth = written(folder)
+    assert "level" not in (folder / "label.json").read_text()
+    ring = truth.plan.rooms[0].polygon
+    rooms = (truth.plan.rooms[0], TrueRoom("up", "", ring, level=1))
+    plan = TruePlan(rooms, levels=TrueLevels((0.0, 3.1)))
+    write_mp3d_fpe(folder, keyframes, GroundTruth(plan, truth.trajectory))
+    again = read_mp3d_fpe_truth(folder).plan
+    assert [room.level for room in again.rooms] == [0, 1]
+    assert again.levels == TrueLevels((0.0, 3.1))
+    label = json.loads((folder / "label.json").read_text())
+    for levels, told in (([0], "2 levels"), ([0, 2], "a level from 0 to 1"), (None, "2 levels")):
+        (folder / "label.json").write_text(json.dumps(label | {"room_levels": levels}))
+        with pytest.raises(InputError, match=told):
+            read_mp3d_fpe_truth(folder)
 
 
 @pytest.mark.parametrize("name", ["0", "007", "a", "-1", "99999999"])

@@ -16,7 +16,7 @@ from panoplan.formats.tum import read_tum
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.layout import Layout
 from panoplan.types.pose import Pose, Trajectory
-from panoplan.types.truth import GroundTruth, TruePlan, TrueRoom
+from panoplan.types.truth import GroundTruth, TrueLevels, TruePlan, TrueRoom
 
 SQUARE = [[0, 0], [2, 0], [2, 2], [0, 2]]
 
@@ -227,3 +227,43 @@ def test_what_is_not_written(tmp_path):
     (tmp_path / "f").write_text("x")
     with pytest.raises(InputError, match="folder to write to"):
         write_sequence(tmp_path / "f", "a", [keyframe("k", 0)])
+
+
+def two_storeys():
+    square = np.array(SQUARE, dtype=float)
+    door = np.array([[0.5, 0.0], [1.4, 0.0]])
+    rooms = (TrueRoom("hall", "hall", square), TrueRoom("bed", "bed", square, level=1))
+    return TruePlan(rooms, doors=(door, door), levels=TrueLevels((0.0, 2.9), doors=(0, 1)))
+
+
+def test_storeys_are_read_as_written(tmp_path):
+    path = tmp_path / "floorplan_gt.json"
+    write_true_plan(path, two_storeys())
+    again = read_true_plan(path)
+    assert [room.level for room in again.rooms] == [0, 1]
+    assert again.levels == TrueLevels((0.0, 2.9), doors=(0, 1))
+    one = TruePlan(two_storeys().rooms[:1])
+    write_true_plan(path, one)
+    assert "level" not in path.read_text()
+    assert read_true_plan(path).levels is None
+
+
+@pytest.mark.parametrize(
+    ("changed", "told"),
+    [
+        (lambda data: data["levels"].update(doors=[0]), "levels.doors: found 1 levels"),
+        (lambda data: data["levels"].update(doors=[0, 2]), "a level from 0 to 1"),
+        (lambda data: data["levels"].update(doors=[0, "1"]), "a level from 0 to 1"),
+        (lambda data: data["levels"].update(floors=["high"]), "levels.floors"),
+        (lambda data: data["rooms"][1].update(level=7), "level of bed"),
+        (lambda data: data.update(levels=[]), "levels"),
+    ],
+)
+def test_bad_storeys(tmp_path, changed, told):
+    path = tmp_path / "floorplan_gt.json"
+    write_true_plan(path, two_storeys())
+    data = json.loads(path.read_text())
+    changed(data)
+    path.write_text(json.dumps(data))
+    with pytest.raises(InputError, match=told):
+        read_true_plan(path)

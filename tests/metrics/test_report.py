@@ -51,7 +51,7 @@ def test_rooms_no_camera_enters_are_told_apart():
     without = evaluate(plan((LEFT, RIGHT)), truth())
     assert without.rooms.scores[1].recall == pytest.approx(2 / 3)
     assert without.rooms.scores_visited[1].recall == 1.0
-    given_cameras = evaluate(plan(), truth(), visited=np.array([[1.0, 1.0]]))
+    given_cameras = evaluate(plan(), truth(), visited=np.array([[1.0, 0.0, 1.0]]))
     assert given_cameras.rooms.visited == 1
 
 

@@ -119,8 +119,14 @@ def test_overlap_counts_what_is_claimed_twice():
 def test_floor_is_the_union():
     halves = _regions(square(0, 0), square(2, 0))
     whole = _regions(np.array([[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [0.0, 2.0]]))
-    assert floor_iou(halves, whole) == pytest.approx(1.0)
-    assert floor_iou(halves, []) == 0.0
+    assert floor_iou([(halves, whole)]) == pytest.approx(1.0)
+    assert floor_iou([(halves, [])]) == 0.0
+
+
+def test_floors_of_two_storeys_add_up():
+    low, high = _regions(square(0, 0)), _regions(square(0, 0, 4.0))
+    assert floor_iou([(low, low), (high, high)]) == pytest.approx(1.0)
+    assert floor_iou([(low, high), (high, low)]) == pytest.approx(8.0 / 32.0)
 
 
 def test_outline_distance_of_a_square_in_a_square():

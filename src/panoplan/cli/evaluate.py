@@ -48,7 +48,7 @@ def act(options: argparse.Namespace) -> int:
 
     visited = None
     if options.visited is not None:
-        visited = read_tum(options.visited).translations[:, [0, 2]]
+        visited = read_tum(options.visited).translations
     report = evaluate(
         read_plan(options.plan),
         read_truth(options.truth),

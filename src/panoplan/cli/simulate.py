@@ -41,6 +41,10 @@ def add_parser(commands: Any) -> None:
         choices=["exact", "mild", "hard", "measured"],
         help="of the errors (default: measured for a family, mild for a plain flat)",
     )
+    parser.add_argument(
+        "--storeys", type=int, default=1, metavar="N",
+        help="of a family's building, each as large as one, joined by stairs (default: 1)",
+    )  # fmt: skip
     parser.add_argument("--stills", action="store_true", help="sparse photos instead of a walk")
     parser.add_argument(
         "--rooms", type=int, choices=range(5, 10), metavar="5-9", help="rooms of a plain flat"
@@ -71,6 +75,10 @@ def act(options: argparse.Namespace) -> int:
         raise InputError("--scenes", str(options.scenes), f"1 to {_MOST_SCENES}")
     if options.family is not None and options.rooms is not None:
         raise InputError("--rooms", "with --family", "one of them: a family draws its rooms")
+    if options.storeys != 1 and options.family is None:
+        raise InputError("--storeys", "no --family", "a family, whose buildings are stacked")
+    if options.storeys != 1 and options.render:
+        raise InputError("--storeys", "--render", "one of them: photographs are of one storey")
     if options.output.exists() and (not options.output.is_dir() or any(options.output.iterdir())):
         raise InputError(options.output, "something there", "a new or an empty folder")
     if options.render and options.format != "sequence":
@@ -99,7 +107,9 @@ def _scene(options: argparse.Namespace, seed: int) -> SimulatedScene:
 
     if options.family is not None:
         grade: Grade = options.grade or "measured"
-        return simulate_scene(options.family, seed, grade, as_stills=options.stills)
+        return simulate_scene(
+            options.family, seed, grade, as_stills=options.stills, storeys=options.storeys
+        )
     return simulate_flat(
         seed,
         options.grade or "mild",

@@ -91,10 +91,7 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
         state, told = _freeze(state, _estimate(state, config), config, leaving=False)
         events += told
     if state.climbing:
-        # A single layout makes no level.
-        rises = [view.rise_su for view in state.climbing]
-        there = float(np.median(rises)) if len(rises) > 1 else state.levels[state.level]
-        state, told = _arrive(state, there, config)
+        state, told = _end_climb(state, config)
         events += told
     if config.shape.method == "fusion":
         if state.finished == state.seen:
@@ -239,13 +236,35 @@ def _arrive(state: State, rise_su: float, config: Config) -> tuple[State, tuple[
         near = ch_per_su * abs(view.rise_su - state.levels[level]) <= config.levels.step_ch
         if near or not changed:
             state, told = _place(state, view, config)
-            events += told
-            continue
-        reason = "between two levels, as on stairs"
-        skipped = Skipped(view.keyframe, "keyframe", reason)
-        state = replace(state, skipped=(*state.skipped, skipped))
-        events.append(KeyframeSkipped(view.keyframe, reason))
+        else:
+            state, told = _between_levels(state, (view,))
+        events += told
     return state, tuple(events)
+
+
+def _end_climb(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
+    """Places the layouts that still wait for their level when the walk ends.
+
+    Those that agree are of one level. Else the walk ends on stairs, or where it has just left
+    them for a level that is known. A single layout makes no level.
+    """
+    rises = np.array([view.rise_su for view in state.climbing])
+    step_su = config.levels.step_ch / state.ch_per_su
+    if len(rises) == 1:
+        return _arrive(state, state.levels[state.level], config)
+    if np.ptp(rises) <= step_su / 2:
+        return _arrive(state, float(np.median(rises)), config)
+    if np.abs(np.array(state.levels) - rises[-1]).min() <= step_su:
+        return _arrive(state, float(rises[-1]), config)
+    return _between_levels(replace(state, climbing=()), state.climbing)
+
+
+def _between_levels(state: State, views: Sequence[CastLayout]) -> tuple[State, tuple[Event, ...]]:
+    """Leaves out layouts of stairs, whose floor is no room's."""
+    reason = "between two levels, as on stairs"
+    skipped = tuple(Skipped(view.keyframe, "keyframe", reason) for view in views)
+    state = replace(state, skipped=(*state.skipped, *skipped))
+    return state, tuple(KeyframeSkipped(view.keyframe, reason) for view in views)
 
 
 def _place(state: State, view: CastLayout, config: Config) -> tuple[State, tuple[Event, ...]]:

@@ -24,12 +24,13 @@ from panoplan.exporters.drawing import (
 from panoplan.exporters.labels import width_em
 from panoplan.exporters.layers import add_layer
 from panoplan.exporters.pictures import write_picture
-from panoplan.exporters.storeys import room_area
+from panoplan.exporters.storeys import room_area, spread, spread_pitch
 from panoplan.metrics.alignment import Freedom, transformed
+from panoplan.metrics.levels import camera_levels
 from panoplan.metrics.report import Report, RoomsKind, evaluate
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import Aperture, FloorPlan, PlanPose, Room, ScaleEstimate
-from panoplan.types.truth import GroundTruth, TrueRoom
+from panoplan.types.truth import GroundTruth, TruePlan, TrueRoom
 
 if TYPE_CHECKING:
     from matplotlib.artist import Artist
@@ -61,9 +62,12 @@ def true_plan(truth: GroundTruth, rooms: RoomsKind = "rooms") -> FloorPlan:
     cameras: tuple[PlanPose, ...] = ()
     if walked is not None:
         positions = walked.translations[:, [0, 2]]
+        on = [0] * len(positions)
+        if plan.levels is not None:
+            on = camera_levels(walked.translations, plan.levels).tolist()
         cameras = tuple(
-            PlanPose(label, position, 0.0, None)
-            for label, position in zip(walked.labels, positions, strict=True)
+            PlanPose(label, position, 0.0, _room_of(true_rooms, level))
+            for label, position, level in zip(walked.labels, positions, on, strict=True)
         )
     return FloorPlan(
         unit="m",
@@ -71,18 +75,36 @@ def true_plan(truth: GroundTruth, rooms: RoomsKind = "rooms") -> FloorPlan:
         scale=ScaleEstimate(None, "given"),
         camera_height_m=plan.camera_height_m,
         rooms=tuple(
-            Room(room.id, room.label or room.id, room.polygon, None, (), holes=room.holes)
+            Room(
+                room.id,
+                room.label or room.id,
+                room.polygon,
+                None,
+                (),
+                holes=room.holes,
+                level=room.level,
+            )
             for room in true_rooms
         ),
         trajectory=cameras,
-        doors=_apertures("door", plan.doors),
-        openings=_apertures("opening", plan.openings),
-        windows=_apertures("window", plan.windows),
+        doors=_apertures("door", plan, true_rooms),
+        openings=_apertures("opening", plan, true_rooms),
+        windows=_apertures("window", plan, true_rooms),
     )
 
 
-def _apertures(kind: str, segments: tuple[FloatArray, ...]) -> tuple[Aperture, ...]:
-    return tuple(Aperture(f"{kind}_{k + 1:02d}", s) for k, s in enumerate(segments))
+def _apertures(kind: str, plan: TruePlan, rooms: tuple[TrueRoom, ...]) -> tuple[Aperture, ...]:
+    segments: tuple[FloatArray, ...] = getattr(plan, f"{kind}s")
+    on: tuple[int, ...] = getattr(plan.levels, f"{kind}s", ()) or (0,) * len(segments)
+    return tuple(
+        Aperture(f"{kind}_{k + 1:02d}", segment, (_room_of(rooms, level),))
+        for k, (segment, level) in enumerate(zip(segments, on, strict=True))
+    )
+
+
+def _room_of(rooms: tuple[TrueRoom, ...], level: int) -> str:
+    """Any room of a storey: it says on which a camera or an aperture is."""
+    return next((room.id for room in rooms if room.level == level), rooms[0].id)
 
 
 def draw_comparison(
@@ -111,6 +133,9 @@ def draw_comparison(
     report = evaluate(plan, truth, rooms=rooms, align=align)
     moved = transformed(plan, report.alignment.true_from_plan)
     true = true_plan(truth, rooms)
+    if truth.plan.levels is not None:
+        pitch = max(spread_pitch(true), spread_pitch(moved))
+        true, moved = spread(true, pitch), spread(moved, pitch)
     bounds = _common_bounds(true, moved)
     figure, (left, middle, right) = _panels(bounds)
     true_colours = room_colours(true.rooms)

@@ -432,8 +432,13 @@ def _path(plan: FloorPlan, sheet: Sheet) -> list[Artist]:
 
     if not plan.trajectory:
         return []
-    x, y = np.array([camera.position for camera in plan.trajectory]).T
-    line = Line2D(x, y, color=PATH_COLOUR, linewidth=0.7 * sheet.weight, alpha=0.55)
+    places = np.array([camera.position for camera in plan.trajectory])
+    x, y = places.T
+    of_room = {room.id: room.level for room in plan.rooms}
+    on = np.array([of_room.get(camera.room or "", 0) for camera in plan.trajectory])
+    # Storeys lie beside one another; no line joins them.
+    way = np.insert(places, np.flatnonzero(np.diff(on)) + 1, np.nan, axis=0)
+    line = Line2D(*way.T, color=PATH_COLOUR, linewidth=0.7 * sheet.weight, alpha=0.55)
     size = float(np.clip(3.4 - 0.004 * len(x), 1.6, 3.4)) * sheet.weight
     dots = Line2D(
         x,

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from panoplan.exporters.drawing import plan_figure
+from panoplan.exporters.storeys import spread
 from panoplan.exporters.svg import quiet_fonts
 from panoplan.formats.atomic import write_bytes
 from panoplan.types.plan import FloorPlan
@@ -36,7 +37,7 @@ def figure_png(figure: Figure, long_side_px: int = LONG_SIDE_PX) -> bytes:
 
 
 def write_png(path: Path, plan: FloorPlan, long_side_px: int = LONG_SIDE_PX) -> None:
-    """Writes a drawing of a plan.
+    """Writes a drawing of a plan, storeys side by side.
 
     Args:
         path: the file.
@@ -46,4 +47,4 @@ def write_png(path: Path, plan: FloorPlan, long_side_px: int = LONG_SIDE_PX) -> 
     Raises:
         InputError: the file cannot be written.
     """
-    write_bytes(path, figure_png(plan_figure(plan), long_side_px))
+    write_bytes(path, figure_png(plan_figure(spread(plan)), long_side_px))

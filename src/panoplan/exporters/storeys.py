@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 import shapely
 
 from panoplan.errors import InputError
+from panoplan.metrics.levels import aperture_level
 from panoplan.metrics.rooms import region
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import Aperture, FloorPlan, PlanPose, Room, SharedWall, Wall
@@ -59,13 +60,8 @@ def storeys(plan: FloorPlan) -> tuple[Storey, ...]:
     of_room = {room.id: room.level for room in shaped}
     of_wall = {wall.id: room.level for room in shaped for wall in room.walls}
 
-    def level_of(item: Aperture) -> int:
-        rooms = [of_room[name] for name in item.rooms if name in of_room]
-        walls = [of_wall[name] for name in item.walls if name in of_wall]
-        return next(iter([*rooms, *walls]), lowest)
-
     def of(items: tuple[Aperture, ...], level: int) -> tuple[Aperture, ...]:
-        return tuple(item for item in items if level_of(item) == level)
+        return tuple(item for item in items if aperture_level(item, of_room, of_wall) == level)
 
     return tuple(
         Storey(
@@ -78,6 +74,60 @@ def storeys(plan: FloorPlan) -> tuple[Storey, ...]:
             tuple(c for c in plan.trajectory if of_room.get(c.room or "", lowest) == level),
         )
         for level in levels
+    )
+
+
+def spread(plan: FloorPlan, pitch: float | None = None) -> FloorPlan:
+    """The plan with its storeys beside one another, to be drawn on one sheet, level 0 at left.
+
+    Args:
+        plan: of any number of storeys; one of a single storey is returned as it is.
+        pitch: how far each is shifted from the last, plan units; None for so far that they are
+            apart.
+    """
+    found = storeys(plan)
+    if len(found) < 2:
+        return plan
+    if pitch is None:
+        pitch = spread_pitch(plan)
+    moved = [_shifted(storey, np.array([k * pitch, 0.0])) for k, storey in enumerate(found)]
+    without = tuple(room for room in plan.rooms if room.polygon is None)
+    kept = {camera.id: camera for storey in moved for camera in storey.cameras}
+    return replace(
+        plan,
+        rooms=tuple(sorted((*without, *(r for s in moved for r in s.rooms)), key=lambda r: r.id)),
+        trajectory=tuple(kept.get(camera.id, camera) for camera in plan.trajectory),
+        doors=tuple(item for storey in moved for item in storey.doors),
+        openings=tuple(item for storey in moved for item in storey.openings),
+        windows=tuple(item for storey in moved for item in storey.windows),
+    )
+
+
+def spread_pitch(plan: FloorPlan) -> float:
+    """How far apart `spread` sets storeys: the widest one and a tenth more, plan units."""
+    ends = [bounds(storey, np.eye(2)) for storey in storeys(plan)]
+    return 1.1 * max((float((high - low)[0]) for low, high in ends), default=0.0)
+
+
+def _shifted(storey: Storey, shift: FloatArray) -> Storey:
+    def aperture(item: Aperture) -> Aperture:
+        return replace(item, segment=item.segment + shift)
+
+    def room(item: Room) -> Room:
+        return replace(
+            item,
+            polygon=None if item.polygon is None else item.polygon + shift,
+            holes=tuple(hole + shift for hole in item.holes),
+            walls=tuple(replace(w, a=w.a + shift, b=w.b + shift) for w in item.walls),
+        )
+
+    return replace(
+        storey,
+        rooms=tuple(room(item) for item in storey.rooms),
+        doors=tuple(aperture(item) for item in storey.doors),
+        openings=tuple(aperture(item) for item in storey.openings),
+        windows=tuple(aperture(item) for item in storey.windows),
+        cameras=tuple(replace(c, position=c.position + shift) for c in storey.cameras),
     )
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from panoplan.exporters.drawing import content_bounds, plan_figure, scaled_figure
+from panoplan.exporters.storeys import spread
 from panoplan.formats.atomic import write_bytes
 from panoplan.types.plan import FloorPlan
 
@@ -61,7 +62,7 @@ def drawing_scale(plan: FloorPlan) -> int | None:
 
 
 def write_svg(path: Path, plan: FloorPlan) -> None:
-    """Writes a drawing of a plan, in true scale where it is metric.
+    """Writes a drawing of a plan, storeys side by side, in true scale where it is metric.
 
     Its groups have the ids rooms, walls, openings, path, corners, labels and scale.
 
@@ -72,6 +73,7 @@ def write_svg(path: Path, plan: FloorPlan) -> None:
     Raises:
         InputError: the file cannot be written.
     """
+    plan = spread(plan)
     scale = drawing_scale(plan)
     figure = plan_figure(plan) if scale is None else scaled_figure(plan, scale)
     write_bytes(path, figure_svg(figure))

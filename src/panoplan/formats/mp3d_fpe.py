@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,19 +19,21 @@ from scipy.spatial.transform import Rotation
 from panoplan.errors import InputError
 from panoplan.formats.atomic import make_folder, read_text, write_bytes, write_text
 from panoplan.formats.horizonnet import WIDTH, at_columns, read_boundaries_npy
-from panoplan.formats.sequence import read_json
+from panoplan.formats.sequence import level_of, read_json
 from panoplan.formats.tum import read_rows
 from panoplan.geometry.polygons import counter_clockwise
 from panoplan.types.arrays import FloatArray, frozen_array
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.layout import Layout
 from panoplan.types.pose import Trajectory
-from panoplan.types.truth import GroundTruth, TruePlan, TrueRoom
+from panoplan.types.truth import GroundTruth, TrueLevels, TruePlan, TrueRoom
 
 _KEYFRAMES = "keyframe_list.txt"
 _POSES = "cam_pose_estimated.csv"
 _TRUE_POSES = "frm_ref.txt"
 _LABEL = "label.json"
+# Ours, in label.json of several storeys: the dataset has one a scene.
+_FLOORS, _ROOM_LEVELS = "level_floors", "room_levels"
 _LAYOUTS = "hn_mp3d"
 _LIMIT = 64 * 2**20
 _MAX_FRAME = 10_000_000
@@ -221,7 +223,16 @@ def _true_plan(path: Path) -> TruePlan:
         if len(polygon) < 3:
             raise InputError(f"{path}, room_corners[{k}]", f"{len(polygon)} corners", "3 or more")
         rooms.append(TrueRoom(f"room_{k + 1:02d}", "", counter_clockwise(polygon)))
-    return TruePlan(rooms=tuple(rooms), axis=_axis(data.get("axis_corners"), path))
+    axis = _axis(data.get("axis_corners"), path)
+    if _FLOORS not in data:
+        return TruePlan(rooms=tuple(rooms), axis=axis)
+    floors = frozen_array(f"{path}, {_FLOORS}", data[_FLOORS], (None,))
+    told = data.get(_ROOM_LEVELS)
+    if not isinstance(told, list) or len(told) != len(rooms):
+        raise InputError(f"{path}, {_ROOM_LEVELS}", "not one a room", f"{len(rooms)} levels")
+    levels = [level_of(item, len(floors), path, _ROOM_LEVELS) for item in told]
+    placed = (replace(room, level=level) for room, level in zip(rooms, levels, strict=True))
+    return TruePlan(tuple(placed), axis=axis, levels=TrueLevels(tuple(floors.tolist())))
 
 
 def _axis(value: Any, path: Path) -> FloatArray | None:
@@ -304,6 +315,9 @@ def _write_truth(
         "axis_corners": None if axis is None else [[0.0, 0.0], np.asarray(axis).tolist()],
         "version": "1.0",
     }
+    if truth.plan.levels is not None:
+        label[_FLOORS] = list(truth.plan.levels.floors_m)
+        label[_ROOM_LEVELS] = [room.level for room in truth.plan.rooms]
     write_text(folder / _LABEL, json.dumps(label, indent=1) + "\n")
 
 

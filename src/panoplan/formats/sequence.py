@@ -7,7 +7,7 @@ import json
 import re
 from collections.abc import Mapping
 from collections.abc import Sequence as Items
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from panoplan.geometry.polygons import counter_clockwise
 from panoplan.types.arrays import FloatArray, frozen_array
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.pose import Trajectory
-from panoplan.types.truth import GroundTruth, TruePlan, TrueRoom
+from panoplan.types.truth import GroundTruth, TrueLevels, TruePlan, TrueRoom
 
 DESCRIPTION = "sequence.json"
 TRAJECTORY = "trajectory.tum"
@@ -181,9 +181,10 @@ def read_true_plan(path: Path) -> TruePlan:
     """Reads floorplan_gt.json.
 
     Args:
-        path: `rooms`, `rooms_partial` (objects with id, label, polygon, holes), `doors`,
+        path: `rooms`, `rooms_partial` (objects with id, label, polygon, holes, level), `doors`,
             `windows`, `openings` (segments, as annotated in `segments_raw` where the file has
-            that), `axis`, `camera_height`; metres, plan frame.
+            that), `axis`, `camera_height`; metres, plan frame; and of several storeys `levels`:
+            `floors`, and the level of each of `doors`, `openings`, `windows`.
 
     Returns:
         The true plan, polygons counter-clockwise.
@@ -194,7 +195,7 @@ def read_true_plan(path: Path) -> TruePlan:
     data = _typed(read_json(path), dict, path, "the file")
     raw = _typed(data.get("segments_raw") or {}, dict, path, "segments_raw")
     axis = data.get("axis")
-    return TruePlan(
+    plan = TruePlan(
         rooms=_rooms(data.get("rooms", []), path, "rooms"),
         rooms_partial=_rooms(data.get("rooms_partial", []), path, "rooms_partial"),
         doors=_segments(raw.get("doors", data.get("doors", [])), path, "doors"),
@@ -203,6 +204,39 @@ def read_true_plan(path: Path) -> TruePlan:
         axis=None if axis is None else frozen_array(f"{path}, axis", axis, (2,)),
         camera_height_m=_height(data.get("camera_height"), path),
     )
+    return replace(plan, levels=_levels(data.get("levels"), plan, path))
+
+
+def _levels(value: Any, plan: TruePlan, path: Path) -> TrueLevels | None:
+    if value is None:
+        return None
+    data = _typed(value, dict, path, "levels")
+    floors = frozen_array(f"{path}, levels.floors", data.get("floors", []), (None,))
+    of = {
+        kind: tuple(
+            level_of(item, len(floors), path, f"levels.{kind}[{k}]")
+            for k, item in enumerate(_typed(data.get(kind, []), list, path, f"levels.{kind}"))
+        )
+        for kind in ("doors", "openings", "windows")
+    }
+    for kind, levels in of.items():
+        if len(levels) != len(getattr(plan, kind)):
+            expected = f"{len(getattr(plan, kind))}, one each"
+            raise InputError(f"{path}, levels.{kind}", f"{len(levels)} levels", expected)
+    for room in (*plan.rooms, *plan.rooms_partial):
+        level_of(room.level, len(floors), path, f"level of {room.id}")
+    return TrueLevels(tuple(floors.tolist()), of["doors"], of["openings"], of["windows"])
+
+
+def level_of(value: Any, count: int, path: Path, where: str) -> int:
+    """A storey that a file tells, one of `count`.
+
+    Raises:
+        InputError: it is none of them.
+    """
+    if type(value) is not int or not 0 <= value < count:
+        raise InputError(f"{path}, {where}", repr(value)[:80], f"a level from 0 to {count - 1}")
+    return value
 
 
 def write_true_plan(path: Path, plan: TruePlan) -> None:
@@ -220,6 +254,7 @@ def write_true_plan(path: Path, plan: TruePlan) -> None:
                 "polygon": np.asarray(room.polygon).tolist(),
                 "holes": [np.asarray(hole).tolist() for hole in room.holes],
             }
+            | ({} if plan.levels is None else {"level": room.level})
             for room in items
         ]
 
@@ -233,6 +268,13 @@ def write_true_plan(path: Path, plan: TruePlan) -> None:
         "axis": None if plan.axis is None else np.asarray(plan.axis).tolist(),
         "camera_height": plan.camera_height_m,
     }
+    if plan.levels is not None:
+        data["levels"] = {
+            "floors": plan.levels.floors_m,
+            "doors": plan.levels.doors,
+            "openings": plan.levels.openings,
+            "windows": plan.levels.windows,
+        }
     write_text(path, json.dumps(data, ensure_ascii=False, indent=1) + "\n")
 
 
@@ -275,6 +317,7 @@ def _rooms(items: Any, path: Path, where: str) -> tuple[TrueRoom, ...]:
                 str(room.get("label", "")),
                 counter_clockwise(polygon),
                 holes,
+                _typed(room.get("level", 0), int, path, f"{where}[{k}].level"),
             )
         )
     return tuple(rooms)

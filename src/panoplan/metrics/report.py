@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any, Literal
 
 import numpy as np
@@ -20,17 +21,19 @@ from panoplan.metrics.alignment import (
 )
 from panoplan.metrics.apertures import aperture_score
 from panoplan.metrics.corners import CornerDistances
+from panoplan.metrics.levels import UNKNOWN, aperture_level, camera_levels, true_levels
 from panoplan.metrics.rooms import Match, Region, RoomScore, Score
 from panoplan.metrics.trajectory import TrajectoryError, trajectory_error
 from panoplan.metrics.walls import WallFigures, wall_figures
-from panoplan.types.arrays import BoolArray, FloatArray
-from panoplan.types.plan import FloorPlan, Room
-from panoplan.types.truth import GroundTruth, TrueRoom
+from panoplan.types.arrays import BoolArray, FloatArray, IntArray
+from panoplan.types.plan import Aperture, FloorPlan, Room
+from panoplan.types.truth import GroundTruth, TrueLevels, TruePlan, TrueRoom
 
 RECALL_CM = (10.0, 25.0)
 """Distances at which corner recall and precision are told."""
 
 RoomsKind = Literal["rooms", "rooms_partial"]
+_Apertures = Literal["doors", "openings", "windows"]
 
 
 @dataclass(frozen=True)
@@ -133,6 +136,7 @@ class Report:
         doors: which were found.
         openings: which were found.
         windows: which were found.
+        storeys: which were found, None where the truth does not tell of several.
         trajectory: camera positions after the alignment, None without common cameras.
         scale_error_percent: estimated scale relative to the true one, less 1; None where it
             cannot be known.
@@ -146,6 +150,7 @@ class Report:
     doors: Score
     openings: Score
     windows: Score
+    storeys: Score | None
     trajectory: TrajectoryError | None
     scale_error_percent: float | None
 
@@ -161,6 +166,9 @@ def evaluate(
 ) -> Report:
     """Compares a plan with the truth.
 
+    What is on different storeys is never the same: rooms, corners and apertures are matched within
+    a storey only, where the truth tells of several.
+
     A plan without any room is a result: recall and precision are 0, and figures over matched
     rooms are None.
 
@@ -168,7 +176,7 @@ def evaluate(
         plan: in metres or camera heights.
         truth: what is true; cameras correspond by keyframe id.
         rooms: complete true rooms, or those split at openings.
-        visited: (K, 2) true camera positions in metres that say which rooms were visited; None
+        visited: (K, 3) true camera positions in metres that say which rooms were visited; None
             for all of the true trajectory.
         align: what may be fitted to bring the plan onto the truth; "scale" is the paper's
             protocol.
@@ -191,7 +199,8 @@ def evaluate(
     found = alignment.align(plan, truth, align)
     moved = transformed(plan, found.true_from_plan)
     predicted = tuple(room for room in moved.rooms if room.polygon is not None)
-    compared = _Compared.of(true_rooms, predicted, _visiting(truth, visited))
+    storey = true_levels(plan, truth)
+    compared = _Compared.of(true_rooms, predicted, storey, _visiting(truth, visited), truth)
     ate = None
     if truth.trajectory is not None:
         ate = trajectory_error(*common_cameras(moved, truth.trajectory))
@@ -206,9 +215,10 @@ def evaluate(
                 for m in compared.matches
             ]
         ),
-        doors=aperture_score(truth.plan.doors, [item.segment for item in moved.doors]),
-        openings=aperture_score(truth.plan.openings, [item.segment for item in moved.openings]),
-        windows=aperture_score(truth.plan.windows, [item.segment for item in moved.windows]),
+        doors=_aperture_score(truth.plan, "doors", moved, storey),
+        openings=_aperture_score(truth.plan, "openings", moved, storey),
+        windows=_aperture_score(truth.plan, "windows", moved, storey),
+        storeys=_storey_score(truth.plan.levels, storey),
         trajectory=ate,
         scale_error_percent=scale_error_percent(plan, truth, true_ch_per_su),
     )
@@ -244,7 +254,35 @@ def scale_error_percent(
 def _visiting(truth: GroundTruth, visited: FloatArray | None) -> FloatArray | None:
     if visited is not None or truth.trajectory is None:
         return visited
-    return truth.trajectory.translations[:, [0, 2]]
+    return truth.trajectory.translations
+
+
+def _storey_score(levels: TrueLevels | None, storey: Mapping[int, int]) -> Score | None:
+    if levels is None:
+        return None
+    hits = sum(level != UNKNOWN for level in storey.values())
+    return Score(hits, len(levels.floors_m), len(storey))
+
+
+def _aperture_score(
+    truth: TruePlan, kind: _Apertures, moved: FloorPlan, storey: Mapping[int, int]
+) -> Score:
+    """The doors, openings or windows of all storeys."""
+    true: tuple[FloatArray, ...] = getattr(truth, kind)
+    items: tuple[Aperture, ...] = getattr(moved, kind)
+    if truth.levels is None:
+        return aperture_score(true, [item.segment for item in items])
+    of_room = {room.id: room.level for room in moved.rooms}
+    of_wall = {wall.id: room.level for room in moved.rooms for wall in room.walls}
+    ours = [storey.get(aperture_level(item, of_room, of_wall), UNKNOWN) for item in items]
+    theirs: tuple[int, ...] = getattr(truth.levels, kind)
+    found = Score(0, 0, ours.count(UNKNOWN))
+    for level in range(len(truth.levels.floors_m)):
+        found += aperture_score(
+            [segment for segment, on in zip(true, theirs, strict=True) if on == level],
+            [item.segment for item, on in zip(items, ours, strict=True) if on == level],
+        )
+    return found
 
 
 @dataclass(frozen=True, eq=False)
@@ -255,28 +293,57 @@ class _Compared:
     predicted: tuple[Room, ...]
     true_regions: tuple[Region, ...]
     predicted_regions: tuple[Region, ...]
+    true_level: IntArray
+    predicted_level: IntArray
     overlap: FloatArray
     visited: BoolArray | None
     matches: tuple[Match, ...]
 
     @staticmethod
     def of(
-        true: tuple[TrueRoom, ...], predicted: tuple[Room, ...], cameras: FloatArray | None
+        true: tuple[TrueRoom, ...],
+        predicted: tuple[Room, ...],
+        storey: Mapping[int, int],
+        cameras: FloatArray | None,
+        truth: GroundTruth,
     ) -> _Compared:
         true_regions = tuple(rooms.region(room.polygon, room.holes) for room in true)
         predicted_regions = tuple(
             rooms.region(room.polygon, room.holes) for room in predicted if room.polygon is not None
         )
+        levels = truth.plan.levels
+        true_level = np.array([0 if levels is None else room.level for room in true])
+        predicted_level = np.array([storey[room.level] for room in predicted], dtype=np.int64)
         overlap = rooms.iou_matrix(true_regions, predicted_regions)
+        overlap[true_level[:, None] != predicted_level] = 0.0
+        visited = None
+        if cameras is not None:
+            on = np.zeros(len(cameras)) if levels is None else camera_levels(cameras, levels)
+            visited = np.zeros(len(true), dtype=np.bool_)
+            for level in np.unique(true_level):
+                there = np.flatnonzero(true_level == level)
+                regions = [true_regions[k] for k in there]
+                visited[there] = rooms.visited_rooms(regions, cameras[on == level][:, [0, 2]])
         return _Compared(
             true,
             predicted,
             true_regions,
             predicted_regions,
+            true_level,
+            predicted_level,
             overlap,
-            None if cameras is None else rooms.visited_rooms(true_regions, cameras),
+            visited,
             rooms.matching(overlap, rooms.MATCH_IOU),
         )
+
+    @property
+    def storeys(self) -> list[tuple[IntArray, IntArray]]:
+        """True and predicted rooms of each storey; those of no true one come last."""
+        levels = [*np.unique(self.true_level), UNKNOWN]
+        return [
+            (np.flatnonzero(self.true_level == k), np.flatnonzero(self.predicted_level == k))
+            for k in levels
+        ]
 
 
 def _room_figures(of: _Compared, without_polygon: int) -> RoomFigures:
@@ -309,7 +376,12 @@ def _room_figures(of: _Compared, without_polygon: int) -> RoomFigures:
             for m, a, d in zip(of.matches, area, outline, strict=True)
         ),
         mean_iou=_mean(np.array([match.iou for match in of.matches])),
-        floor_iou=rooms.floor_iou(of.true_regions, of.predicted_regions),
+        floor_iou=rooms.floor_iou(
+            [
+                ([of.true_regions[k] for k in true], [of.predicted_regions[k] for k in ours])
+                for true, ours in of.storeys
+            ]
+        ),
         area_error_median_percent=float(np.median(area)) if len(area) else None,
         area_error_mean_abs_percent=_mean(np.abs(area)),
         outline_cm=_mean(outline),
@@ -342,23 +414,37 @@ def _overlap(of: _Compared) -> float:
 def _corner_figures(of: _Compared, axis: FloatArray | None) -> CornerFigures:
     true = [room.polygon for room in of.true]
     predicted = [room.polygon for room in of.predicted if room.polygon is not None]
-    ours, theirs = corners.all_corners(true), corners.all_corners(predicted)
-    grid = corners.corner_grid(ours, axis)
+    grid = corners.corner_grid(corners.all_corners(true), axis)
     there, back = corners.both_ways(true, predicted, of.matches)
-    paper_visited = released_visited = None
-    if of.visited is not None:
-        entered = _where(true, np.flatnonzero(of.visited))
-        left_out = rooms.of_unvisited(of.overlap, of.visited)
-        counted = _where(predicted, [k for k in range(len(predicted)) if k not in left_out])
-        paper_visited = corners.paper_score(entered, counted, grid)
-        released_visited = corners.released_score(entered, counted, grid)
+
+    def score(how: Callable[[FloatArray, FloatArray], Score], *, visited: bool = False) -> Score:
+        """Over all storeys; of visited rooms and the predictions that show no other."""
+        entered = np.ones(len(true), dtype=np.bool_)
+        left_out: tuple[int, ...] = ()
+        if visited and of.visited is not None:
+            entered, left_out = of.visited, rooms.of_unvisited(of.overlap, of.visited)
+        found = Score(0, 0, 0)
+        for ours, theirs in of.storeys:
+            counted = [k for k in theirs if k not in left_out]
+            found += how(_where(true, ours[entered[ours]]), _where(predicted, counted))
+        return found
+
+    def paper(ours: FloatArray, theirs: FloatArray) -> Score:
+        return corners.paper_score(ours, theirs, grid)
+
+    def released(ours: FloatArray, theirs: FloatArray) -> Score:
+        return corners.released_score(ours, theirs, grid)
+
+    known = of.visited is not None
     return CornerFigures(
         metres_per_px=grid.metres_per_px,
-        paper=corners.paper_score(ours, theirs, grid),
-        paper_visited=paper_visited,
-        released=corners.released_score(ours, theirs, grid),
-        released_visited=released_visited,
-        within=tuple((cm, corners.score_within(ours, theirs, cm / 100.0)) for cm in RECALL_CM),
+        paper=score(paper),
+        paper_visited=score(paper, visited=True) if known else None,
+        released=score(released),
+        released_visited=score(released, visited=True) if known else None,
+        within=tuple(
+            (cm, score(partial(corners.score_within, radius_m=cm / 100.0))) for cm in RECALL_CM
+        ),
         true_to_predicted=there,
         predicted_to_true=back,
     )
@@ -409,6 +495,7 @@ def as_dict(report: Report) -> dict[str, Any]:
         "doors": _score(report.doors),
         "openings": _score(report.openings),
         "windows": _score(report.windows),
+        "storeys": _score(report.storeys),
         "trajectory": None if report.trajectory is None else _plain(report.trajectory),
         "scale_error_percent": report.scale_error_percent,
     }
@@ -449,6 +536,8 @@ def _head_rows(report: Report) -> list[tuple[str, str]]:
         ("predicted rooms", f"{room.predicted}{none}, {room.matching_none} matching none"),
         ("alignment", f"{free}: {moved.scale:.4f} m a plan unit{motion}"),
     ]
+    if report.storeys is not None:
+        rows.insert(2, ("storeys", _recall_precision(report.storeys)))
     if report.trajectory is not None:
         ate = report.trajectory
         share = _number(ate.rmse_percent_of_length, ".2f", " % of the path")

@@ -48,6 +48,12 @@ class Score:
         """Share of what was predicted that is true; 0 where nothing was predicted."""
         return self.hits / self.predicted if self.predicted else 0.0
 
+    def __add__(self, other: Score) -> Score:
+        """The score of both together."""
+        return Score(
+            self.hits + other.hits, self.true + other.true, self.predicted + other.predicted
+        )
+
 
 @dataclass(frozen=True)
 class RoomScore(Score):
@@ -192,9 +198,16 @@ def visited_rooms(rooms: Sequence[Region], cameras: FloatArray) -> BoolArray:
     return np.array([bool(shapely.covers(room, points).any()) for room in rooms], dtype=np.bool_)
 
 
-def floor_iou(true: Sequence[Region], predicted: Sequence[Region]) -> float:
-    """IoU of all true rooms together with all predicted ones together."""
-    return iou(shapely.union_all(list(true)), shapely.union_all(list(predicted)))
+def floor_iou(storeys: Sequence[tuple[Sequence[Region], Sequence[Region]]]) -> float:
+    """IoU of all true rooms together with all predicted ones together.
+
+    Args:
+        storeys: true and predicted rooms of each; areas add up over them.
+    """
+    floors = [tuple(shapely.union_all(list(rooms)) for rooms in both) for both in storeys]
+    common = sum(float(one.intersection(other).area) for one, other in floors)
+    total = sum(float(one.area + other.area) for one, other in floors) - common
+    return common / total if total > 0 else 0.0
 
 
 def overlap_area(rooms: Sequence[Region]) -> float:

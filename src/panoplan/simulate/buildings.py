@@ -1,4 +1,4 @@
-"""Made-up buildings: rooms, the walls between them, doors, openings and windows."""
+"""Made-up buildings: rooms, the walls between them, doors, openings, windows and stairs."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from panoplan.errors import InputError
 from panoplan.geometry.polygons import counter_clockwise, signed_area
 from panoplan.simulate.adjacency import SharedWall, shared_walls
 from panoplan.simulate.partition import clip, cut, notch
-from panoplan.types.arrays import FloatArray, frozen_array
+from panoplan.types.arrays import FloatArray, IntArray, frozen_array
 
 PassageKind = Literal["door", "opening"]
 Seed = int | np.random.SeedSequence | np.random.Generator
 
 _JAMB_MARGIN_M = 0.1
+_LOWEST_EYE_M = 0.5
 _SIZES_TRIED, _DRAWS_A_SIZE = 40, 30
 
 
@@ -32,12 +33,14 @@ class InteriorRoom:
         polygon: (N, 2) interior faces of its walls, open, counter-clockwise in (x, z), metres.
         ceiling_height_m: floor to ceiling.
         holes: (M, 2) open rings, clockwise, of what stands free in it, such as pillars.
+        level: storey that it is on, from 0.
     """
 
     label: str
     polygon: FloatArray
     ceiling_height_m: float = 2.5
     holes: tuple[FloatArray, ...] = ()
+    level: int = 0
 
     def __post_init__(self) -> None:
         """Copies, checks and turns the polygon counter-clockwise."""
@@ -148,15 +151,49 @@ class BlindDoor:
 
 
 @dataclass(frozen=True, eq=False)
+class Stairs:
+    """A straight flight from a room to one of the next storey, through a hole in its floor.
+
+    Attributes:
+        rooms: indices of the lower and of the upper room.
+        line: (2, 2) plan, its middle from foot to head, metres.
+        width: metres.
+    """
+
+    rooms: tuple[int, int]
+    line: FloatArray
+    width: float
+
+    def __post_init__(self) -> None:
+        """Copies and checks the line."""
+        object.__setattr__(self, "line", frozen_array("line", self.line, (2, 2)))
+
+    @property
+    def along(self) -> FloatArray:
+        """(2,) unit vector from foot to head."""
+        run = self.line[1] - self.line[0]
+        return np.asarray(run / np.hypot(*run))
+
+    @property
+    def area(self) -> FloatArray:
+        """(4, 2) what it takes of the lower floor and leaves out of the upper."""
+        side = self.width / 2 * np.array([-self.along[1], self.along[0]])
+        foot, head = self.line
+        return np.array([foot - side, head - side, head + side, foot + side])
+
+
+@dataclass(frozen=True, eq=False)
 class Building:
-    """One storey of a building, in metres, plan frame (x, z).
+    """A building, in metres, plan frame (x, z).
 
     Attributes:
         name: what it is called.
-        rooms: disjoint.
+        rooms: storey by storey; those of one are disjoint.
         passages: doors and openings between them.
         windows: in outer walls.
         blind_doors: doors and openings to what is no part of the building.
+        floors_m: how high the floor of each storey lies above that of the first.
+        stairs: from each storey to the next, in their order.
     """
 
     name: str
@@ -164,6 +201,8 @@ class Building:
     passages: tuple[Passage, ...] = ()
     windows: tuple[Window, ...] = ()
     blind_doors: tuple[BlindDoor, ...] = ()
+    floors_m: tuple[float, ...] = (0.0,)
+    stairs: tuple[Stairs, ...] = ()
 
     @property
     def doors(self) -> tuple[Passage, ...]:
@@ -186,8 +225,51 @@ class Building:
             (k, p.rooms[1 - p.side(room)]) for k, p in enumerate(self.passages) if room in p.rooms
         ]
 
+    def floor_m(self, room: int) -> float:
+        """How high a room's floor lies above that of the first storey, metres."""
+        return self.floors_m[self.rooms[room].level]
+
+    def levels_below(self, eyes_m: FloatArray) -> IntArray:
+        """The storey whose floor a camera looks down on.
+
+        Args:
+            eyes_m: (N,) heights of cameras above the first storey's floor.
+
+        Returns:
+            (N,) the highest storey whose floor lies at least half a metre lower; 0 below that.
+        """
+        over = np.searchsorted(np.array(self.floors_m) + _LOWEST_EYE_M, eyes_m, side="right")
+        return np.asarray(np.maximum(over - 1, 0))
+
+    def storey(self, level: int) -> tuple[int, Building]:
+        """One storey as a building of its own.
+
+        Args:
+            level: of it.
+
+        Returns:
+            Index of its first room here, whose index there is 0; and the storey without stairs.
+        """
+        there = [k for k, room in enumerate(self.rooms) if room.level == level]
+        first = there[0]
+        return first, replace(
+            self,
+            rooms=tuple(replace(self.rooms[k], level=0) for k in there),
+            passages=tuple(
+                replace(p, rooms=(p.rooms[0] - first, p.rooms[1] - first))
+                for p in self.passages
+                if p.rooms[0] in there
+            ),
+            windows=tuple(replace(w, room=w.room - first) for w in self.windows if w.room in there),
+            blind_doors=tuple(
+                replace(d, room=d.room - first) for d in self.blind_doors if d.room in there
+            ),
+            floors_m=(0.0,),
+            stairs=(),
+        )
+
     def reachable(self, start: int = 0) -> set[int]:
-        """Indices of the rooms that can be walked to from `start`."""
+        """Indices of the rooms of its storey that can be walked to from `start`."""
         seen, todo = {start}, [start]
         while todo:
             for _, behind in self.neighbours(todo.pop()):
@@ -223,6 +305,7 @@ class Building:
             blind_doors=tuple(
                 replace(d, segment=d.segment @ rotation.T + shift) for d in self.blind_doors
             ),
+            stairs=tuple(replace(s, line=s.line @ rotation.T + shift) for s in self.stairs),
         )
 
 

@@ -10,7 +10,7 @@ from scipy.special import ndtri
 from panoplan.errors import InputError
 from panoplan.simulate.buildings import Building
 from panoplan.simulate.film import film
-from panoplan.simulate.houses import Style, make_house
+from panoplan.simulate.houses import Style, make_house, make_storeys
 from panoplan.simulate.joining import Joinery
 from panoplan.simulate.noise import NoiseModel
 from panoplan.simulate.scene import Grade, SimulatedScene, noise_model, recorded
@@ -21,6 +21,7 @@ TUNING_SEEDS = range(25)
 REPORTED_SEEDS = range(25, 50)
 """Scenes that figures are reported of; nothing is chosen by them."""
 
+MOST_STOREYS = 4
 _BLOCK = 50
 _STRIDES = (37, 29)
 _GOLDEN = (np.sqrt(5) - 1) / 2
@@ -132,20 +133,27 @@ def family_of(name: str) -> Family:
     return _FAMILIES[name]
 
 
-def make_building(family: str, seed: int) -> Building:
+def make_building(family: str, seed: int, storeys: int = 1) -> Building:
     """The building of a family and a seed.
 
     Args:
         family: one of `FAMILIES`.
         seed: ≥ 0; the same seed gives the same building.
+        storeys: how many; each has as many rooms as the building of one.
 
     Raises:
-        InputError: no such family, or a negative seed.
+        InputError: no such family, a negative seed, or not 1 to 4 storeys.
     """
     known = family_of(family)
     if seed < 0:
         raise InputError("seed", str(seed), "0 or more")
+    if not 1 <= storeys <= MOST_STOREYS:
+        raise InputError("storeys", str(storeys), f"1 to {MOST_STOREYS}")
     rooms, area = known.size(seed)
+    if storeys > 1:
+        rng = np.random.default_rng([FAMILIES.index(family), seed, storeys])
+        name = f"{family}_{seed:04d}_{storeys}_storeys"
+        return make_storeys(name, known.style, rooms, area, storeys, rng)
     rng = np.random.default_rng([FAMILIES.index(family), seed])
     return make_house(f"{family}_{seed:04d}", known.style, rooms, area, rng)
 
@@ -156,6 +164,7 @@ def simulate_scene(
     grade: Grade | NoiseModel = "measured",
     *,
     as_stills: bool = False,
+    storeys: int = 1,
     metres_per_su: float | None = None,
 ) -> SimulatedScene:
     """A scene of a family: the building of a seed, filmed on a walk through all its rooms.
@@ -165,15 +174,17 @@ def simulate_scene(
         seed: ≥ 0; building and walk do not depend on the grade.
         grade: name of a grade, or a noise model.
         as_stills: sparse photos instead of a walk.
+        storeys: how many, 1 to 4.
         metres_per_su: metres a trajectory unit; log-uniform over 0.1-10 where None.
 
     Raises:
-        InputError: no such family or grade, or a negative seed.
+        InputError: no such family or grade, a negative seed, or so many storeys.
     """
-    building = make_building(family, seed)
+    building = make_building(family, seed, storeys)
+    # The scenes of one storey are frozen, and so is what they are drawn by.
+    root = [FAMILIES.index(family), seed, 1, *([storeys] if storeys > 1 else [])]
     way_rng, unit_rng, noise_rng, drift_rng = (
-        np.random.default_rng(s)
-        for s in np.random.SeedSequence([FAMILIES.index(family), seed, 1]).spawn(4)
+        np.random.default_rng(s) for s in np.random.SeedSequence(root).spawn(4)
     )
     unit = float(10 ** unit_rng.uniform(-1, 1)) if metres_per_su is None else metres_per_su
     way = stills(building, way_rng) if as_stills else film(building, way_rng)

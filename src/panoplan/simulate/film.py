@@ -15,6 +15,7 @@ from panoplan.simulate.walks import (
     about_y,
     about_z,
     camera_height,
+    first_room,
     headings_along,
     locate,
     path_through,
@@ -76,7 +77,7 @@ def film(
         building: connected.
         rng: of all choices.
         pace: of the walk and of the keyframes.
-        start: index of the first room; drawn where None.
+        start: index of the first room, of the first storey; drawn where None.
         camera_height_m: nominal height; drawn from 1.4-1.7 m where None.
 
     Returns:
@@ -86,26 +87,26 @@ def film(
         InputError: a room cannot be reached or is too narrow to walk in.
     """
     height = camera_height(rng, camera_height_m)
-    first = int(rng.integers(len(building.rooms))) if start is None else start
-    path = path_through(building, rng, first)
+    path = path_through(building, rng, first_room(building, rng, start))
     headings = headings_along(path)
     speed = _speed(headings, pace, rng)
     seconds = np.concatenate([[0.0], np.cumsum(PATH_SPACING_M / speed[1:])])
     at = np.arange(0.0, seconds[-1], 1 / pace.frames_per_s)
     positions = np.stack([np.interp(at, seconds, path[:, k]) for k in range(2)], axis=1)
+    floors_m = np.interp(at, seconds, path[:, 2])
     wander = np.deg2rad(pace.wander_deg) * smooth_noise(rng, len(at), 3 * pace.frames_per_s)
     beta = np.interp(at, seconds, headings) + wander
     rise, tilt = _gait(np.interp(at, seconds, speed), pace, rng)
     rotations = about_y(beta) @ about_x(tilt[:, 0]) @ about_z(tilt[:, 1])
-    translations = np.stack([positions[:, 0], rise, positions[:, 1]], axis=1)
+    translations = np.stack([positions[:, 0], rise - floors_m, positions[:, 1]], axis=1)
     labels = tuple(f"{k + 1:06d}" for k in range(len(at)))
-    rooms = locate(building, positions, beta)
+    rooms = locate(building, positions, beta, height + floors_m)
     kept = _keyframes(building, positions, rooms, pace, rng)
     return Walk(
         Trajectory(tuple(labels[k] for k in kept), rotations[kept], translations[kept]),
         rooms[kept],
         height,
-        path,
+        path[:, :2],
         Trajectory(labels, rotations, translations),
     )
 

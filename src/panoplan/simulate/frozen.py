@@ -33,7 +33,7 @@ SCENES: dict[tuple[str, int], str] = {
 
 
 def buildings_digest(buildings: Iterable[Building]) -> str:
-    """SHA-256 of rooms, passages, windows and outer doors, in hexadecimal."""
+    """SHA-256 of rooms, passages, windows, outer doors and stairs, in hexadecimal."""
     digest = hashlib.sha256()
     for building in buildings:
         for room in building.rooms:
@@ -47,6 +47,9 @@ def buildings_digest(buildings: Iterable[Building]) -> str:
         for door in building.blind_doors:
             digest.update(door.kind.encode())
             _add(digest, door.segment)
+        for stairs in building.stairs:
+            digest.update(f"{stairs.rooms}".encode())
+            _add(digest, stairs.line, np.array([stairs.width, *building.floors_m]))
     return digest.hexdigest()
 
 

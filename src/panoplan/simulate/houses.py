@@ -25,11 +25,13 @@ from panoplan.simulate.features import (
 )
 from panoplan.simulate.joining import SERVANT, SHARED, WAYS, Joinery, join
 from panoplan.simulate.partition import clip, cut
+from panoplan.simulate.storeys import stack
 from panoplan.simulate.walks import can_be_walked
 from panoplan.simulate.wings import Shape, Wing, make_wings
 from panoplan.types.arrays import FloatArray
 
 _ATTEMPTS = 3000
+_HOUSES_TRIED, _STOREYS_TRIED = 60, 30
 _AREA_TOLERANCE = 0.04
 _NARROWEST_BAND_M = 2.3
 _DEPTHS_AT_LEAST_M = 2.6
@@ -88,19 +90,65 @@ def make_house(
     Raises:
         InputError: so many rooms do not fit into so little.
     """
-    inner = area_m2 * 1.05
     skewed = bool(rng.random() < style.skewed_share)
+    return _somewhere(_storey(name, style, rooms, area_m2, skewed, rng)[0], rng)
+
+
+def make_storeys(
+    name: str, style: Style, rooms: int, area_m2: float, storeys: int, rng: np.random.Generator
+) -> Building:
+    """A house of several storeys upon the same wings, each divided anew, joined by stairs.
+
+    Args:
+        name: what it is called.
+        style: of its family.
+        rooms: how many on each storey, ≥ 3.
+        area_m2: of the first storey's rooms; met within 4 %.
+        storeys: how many, ≥ 2.
+        rng: of everything else.
+
+    Returns:
+        The house, connected and walkable, turned by any angle, its middle near the origin.
+
+    Raises:
+        InputError: so many rooms do not fit into so little, or stairs fit nowhere.
+    """
+    skewed = bool(rng.random() < style.skewed_share)
+    for _ in range(_HOUSES_TRIED):
+        house, wings = _storey(name, style, rooms, area_m2, skewed, rng)
+        for _ in range(_STOREYS_TRIED):
+            upper, _ = _storey(name, style, rooms, area_m2, skewed, rng, wings)
+            stacked = stack(house, upper, rng)
+            if stacked is not None and can_be_walked(stacked):
+                house = stacked
+            if len(house.floors_m) == storeys:
+                return _somewhere(house, rng)
+    raise InputError(name, f"{storeys} storeys of {area_m2:.0f} m²", "rooms that stairs fit into")
+
+
+def _storey(
+    name: str,
+    style: Style,
+    rooms: int,
+    area_m2: float,
+    skewed: bool,
+    rng: np.random.Generator,
+    wings: list[Wing] | None = None,
+) -> tuple[Building, list[Wing]]:
+    """One storey, connected and walkable, and its wings, which are drawn where not given."""
+    inner = area_m2 * 1.05
     for _ in range(_ATTEMPTS):
-        drafts = _drafts(style, rooms, inner, skewed, rng)
-        if drafts is None:
+        planned = _drafts(style, rooms, inner, skewed, rng, wings)
+        if planned is None:
             continue
+        drafts, own = planned
         found = sum(draft.floor.area for draft in drafts)
-        if abs(found / area_m2 - 1) > _AREA_TOLERANCE:
+        if wings is None and abs(found / area_m2 - 1) > _AREA_TOLERANCE:
             inner *= float(np.clip(area_m2 / found, 0.8, 1.25))
             continue
         house = _joined(name, style, drafts, rng)
         if len(house.reachable()) == len(drafts) and can_be_walked(house):
-            return _somewhere(house, rng)
+            return house, own
     raise InputError(name, f"{rooms} rooms in {area_m2:.0f} m²", "rooms that fit into the area")
 
 
@@ -110,13 +158,18 @@ def _somewhere(house: Building, rng: np.random.Generator) -> Building:
 
 
 def _drafts(
-    style: Style, rooms: int, inner_m2: float, skewed: bool, rng: np.random.Generator
-) -> list[Draft] | None:
-    """The rooms of a house, or None where the draw does not fit."""
+    style: Style,
+    rooms: int,
+    inner_m2: float,
+    skewed: bool,
+    rng: np.random.Generator,
+    given: list[Wing] | None,
+) -> tuple[list[Draft], list[Wing]] | None:
+    """The rooms of a storey and its wings, or None where the draw does not fit."""
     closets = int(rng.binomial(rooms, style.closet_share)) if rooms > 3 else 0
     count = max(rooms - closets, 3)
-    wings = _wings(style, count, inner_m2, skewed, rng)
-    if wings is None:
+    wings = _wings(style, count, inner_m2, skewed, rng) if given is None else given
+    if wings is None or len(wings) > count:
         return None
     drafts: list[Draft] = []
     for wing, share in zip(wings, _shares(count, wings), strict=True):
@@ -130,7 +183,7 @@ def _drafts(
         if not _add_closet(style, drafts, rng):
             return None
     _add_features(style, drafts, skewed, rng)
-    return drafts
+    return drafts, wings
 
 
 def _wings(

@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 from scipy.spatial import cKDTree
 
-from panoplan.simulate.buildings import Building
+from panoplan.simulate.buildings import Building, Stairs
 from panoplan.simulate.render.cast import ray_caster
 from panoplan.simulate.render.furnish import draw_uses, furnish
 from panoplan.simulate.render.looks import draw_look
@@ -29,6 +29,7 @@ _Gap = tuple[FloatArray, float, float]
 """Segment of a wall's face, and from where to where above the floor there is nothing."""
 _Part = tuple[int, FloatArray]
 """Room, and (N, 3) x, z and height above its floor of points in it."""
+_FLIGHT_POINTS_M2 = 400.0
 
 
 def scanned(
@@ -52,17 +53,17 @@ def scanned(
     rng = np.random.default_rng(seed)
     parts = [*_walls(building, rng)]
     for k, room in enumerate(building.rooms):
-        parts += [(k, _level(room.floor, up, rng)) for up in (0.0, room.ceiling_height_m)]
+        for end, up in enumerate((0.0, room.ceiling_height_m)):
+            parts.append((k, _level(_around_stairs(building, k, end), up, rng)))
     # What lies between the jambs is in nobody's way.
-    sills = [_level(shapely.Polygon(p.area), 0.0, rng) for p in building.passages]
+    sills = [(p.rooms[0], _level(shapely.Polygon(p.area), 0.0, rng)) for p in building.passages]
     if walked is not None:
-        cameras = np.stack(
-            [walked[:, 0], walked[:, 2], camera_height_m - walked[:, 1]], axis=1
-        )  # as a part: x, z, height
-        things = _furniture(building, cameras[:, :2], np.random.default_rng([seed, 1]))
-        parts += _on_furniture(building, things, rng)
-        parts = _seen(building, parts, cameras, things)
-    plan_and_up = np.concatenate([points for _, points in parts] + sills)
+        cameras = np.stack([walked[:, 0], walked[:, 2], camera_height_m - walked[:, 1]], axis=1)
+        parts = _furnished(building, parts, cameras, seed, rng)
+    plan_and_up = np.concatenate(
+        [points + [0.0, 0.0, building.floor_m(k)] for k, points in parts + sills]
+        + [_flight(building, stairs, rng) for stairs in building.stairs]
+    )
     points = np.stack(
         [plan_and_up[:, 0], camera_height_m - plan_and_up[:, 2], plan_and_up[:, 1]], axis=1
     )
@@ -102,6 +103,53 @@ def _level(area: shapely.Polygon, up: float, rng: np.random.Generator) -> FloatA
     at = rng.uniform(low, high, (count, 2))
     at = at[shapely.contains_xy(area, at)]
     return np.column_stack([at, np.full(len(at), up)])
+
+
+def _around_stairs(building: Building, room: int, end: int) -> shapely.Polygon:
+    """A room's floor (end 0) or ceiling (1) without the holes that stairs go through."""
+    area = building.rooms[room].floor
+    for stairs in building.stairs:
+        if stairs.rooms[1 - end] == room:
+            area = area.difference(shapely.Polygon(stairs.area))
+    return area
+
+
+def _flight(building: Building, stairs: Stairs, rng: np.random.Generator) -> FloatArray:
+    """(N, 3) points on the slope of stairs; height above the first storey's floor."""
+    low, high = (building.floor_m(room) for room in stairs.rooms)
+    run = stairs.line[1] - stairs.line[0]
+    slope = float(np.sqrt(run @ run + (high - low) ** 2))
+    share, off = rng.random((2, rng.poisson(_FLIGHT_POINTS_M2 * slope * stairs.width)))
+    side = stairs.width * np.array([-stairs.along[1], stairs.along[0]])
+    at = stairs.line[0] + share[:, None] * run + (off[:, None] - 0.5) * side
+    return np.column_stack([at, low + share * (high - low)])
+
+
+def _furnished(
+    building: Building,
+    parts: Iterable[_Part],
+    cameras: FloatArray,
+    seed: int,
+    rng: np.random.Generator,
+) -> list[_Part]:
+    """The parts and those of furniture, less what it hides from the cameras of its storey."""
+    on = building.levels_below(cameras[:, 2])
+    # Nothing stands below stairs or over the hole that they go through.
+    flights = [
+        sample
+        for stairs in building.stairs
+        for sample in shapely.segmentize(shapely.LinearRing(stairs.area), 0.2).coords
+    ]
+    kept: list[_Part] = []
+    for level, floor_m in enumerate(building.floors_m):
+        first, storey = building.storey(level)
+        there = cameras[on == level] - [0.0, 0.0, floor_m]
+        clear = np.vstack([there[:, :2], *flights])
+        things = _furniture(storey, clear, np.random.default_rng([seed, 1, level]))
+        own = [(k - first, points) for k, points in parts if building.rooms[k].level == level]
+        own += _on_furniture(storey, things, rng)
+        kept += [(k + first, points) for k, points in _seen(storey, own, there, things)]
+    return kept
 
 
 def _furniture(building: Building, walked: FloatArray, rng: np.random.Generator) -> FloatArray:
@@ -147,9 +195,10 @@ def _seen(
         own = cameras[shapely.contains_xy(building.rooms[k].floor, cameras[:, :2])]
         # Closets are looked into.
         there = own if len(own) else cameras
-        _, near = cKDTree(there).query(points, k=range(1, min(_LOOKS, len(there)) + 1))
+        looks = min(_LOOKS, len(there))
+        _, near = cKDTree(there).query(points, k=looks)
         seen = np.zeros(len(points), dtype=np.bool_)
-        for column in near.T:
+        for column in np.reshape(near, (len(points), looks)).T:
             todo = np.flatnonzero(~seen)
             towards = points[todo] - there[column[todo]]
             reach = 1 - _SAME_SURFACE_M / np.sqrt((towards**2).sum(axis=1))

@@ -19,10 +19,11 @@ from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.layout import Layout
 from panoplan.types.pose import Pose, Trajectory
-from panoplan.types.truth import GroundTruth, TruePlan, TrueRoom
+from panoplan.types.truth import GroundTruth, TrueLevels, TruePlan, TrueRoom
 
 Grade = Literal["exact", "mild", "hard", "measured"]
 _DOORWAY_M = 0.25
+_BELOW_CEILING_M = 0.2
 
 
 @dataclass(frozen=True, eq=False)
@@ -234,7 +235,7 @@ def true_plan(building: Building, camera_height_m: float | None = None) -> TrueP
         The plan.
     """
     rooms = tuple(
-        TrueRoom(f"room_{k + 1:02d}", room.label, room.polygon, room.holes)
+        TrueRoom(f"room_{k + 1:02d}", room.label, room.polygon, room.holes, room.level)
         for k, room in enumerate(building.rooms)
     )
     longest = max(
@@ -249,6 +250,7 @@ def true_plan(building: Building, camera_height_m: float | None = None) -> TrueP
         windows=tuple(w.segment for w in building.windows),
         axis=longest / np.hypot(*longest),
         camera_height_m=camera_height_m,
+        levels=_true_levels(building) if building.stairs else None,
     )
 
 
@@ -258,6 +260,16 @@ def _faces(building: Building, kind: PassageKind) -> tuple[FloatArray, ...]:
         *(face for p in building.passages if p.kind == kind for face in p.faces),
         *(d.segment for d in building.blind_doors if d.kind == kind),
     )
+
+
+def _true_levels(building: Building) -> TrueLevels:
+    def of(kind: PassageKind) -> tuple[int, ...]:
+        rooms = [p.rooms[0] for p in building.passages if p.kind == kind for _ in p.faces]
+        rooms += [d.room for d in building.blind_doors if d.kind == kind]
+        return tuple(building.rooms[k].level for k in rooms)
+
+    windows = tuple(building.rooms[w.room].level for w in building.windows)
+    return TrueLevels(building.floors_m, of("door"), of("opening"), windows)
 
 
 def noise_model(grade: Grade | NoiseModel) -> NoiseModel:
@@ -297,6 +309,7 @@ def noisy_view(
     """
     building, room = caster.building, int(way.rooms[index])
     pose = way.trajectory[index]
+    eye_m = way.camera_height_m - float(pose.translation[1]) - building.floor_m(room)
     position, heading = pose.translation[[0, 2]], heading_of(pose.rotation)
     behind = [k for k, _ in building.neighbours(room)]
     near = [k for k in behind if _before(building.passages[k], position)]
@@ -315,7 +328,8 @@ def noisy_view(
     view = caster.view(
         position,
         heading,
-        way.camera_height_m - float(pose.translation[1]),
+        # On stairs it may be above the lower room's ceiling.
+        min(eye_m, building.rooms[room].ceiling_height_m - _BELOW_CEILING_M),
         width=width,
         leaks={k: leak.depth_m + begin.get(k, 0.0) for k, leak in leaks.items()},
         room=room,

@@ -11,13 +11,14 @@ from scipy.ndimage import gaussian_filter1d
 from shapely.geometry.polygon import orient
 
 from panoplan.errors import InputError
-from panoplan.simulate.buildings import Building, Passage
+from panoplan.simulate.buildings import Building, Passage, Stairs
 from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.pose import Trajectory
 
 _CLEARANCES_M = (0.35, 0.3, 0.25, 0.2, 0.15, 0.1)
 _WAYPOINT_CLEARANCES_M = (0.5, 0.4, 0.3, 0.2, 0.1)
 _TURN_M = 0.3
+_COMES_DOWN = 0.5
 _HEADING_SMOOTHING_M = 0.35
 PATH_SPACING_M = 0.02
 """Between the points of a path."""
@@ -27,12 +28,14 @@ PATH_SPACING_M = 0.02
 class Walk:
     """Where the camera truly is at each keyframe.
 
-    World: metres, (x, z) the building's plan, y down, y = 0 at the nominal camera height.
+    World: metres, (x, z) the building's plan, y down, y = 0 at the nominal camera height over the
+    first storey's floor.
 
     Attributes:
         trajectory: world_from_cam of every keyframe; labels are zero-padded numbers from 0.
         rooms: (N,) index of the room each keyframe stands in or, in a doorway, looks into.
-        camera_height_m: nominal height above the floor; a keyframe's is this less its y.
+        camera_height_m: nominal height above the floor; a keyframe's over the first storey's is
+            this less its y.
         path: (P, 2) plan, the way walked, densely; the camera's positions for stills.
         frames: world_from_cam of every frame of the video, labelled with its number from 1, or
             None where there is none.
@@ -67,7 +70,7 @@ def walk(
         step_m: mean way between keyframes, metres; single steps vary by ± 25 %.
         keyframes_per_room: at least about so many keyframes in each room; by its size where
             None.
-        start: index of the first room; drawn where None.
+        start: index of the first room, of the first storey; drawn where None.
         camera_height_m: nominal height; drawn from 1.4-1.7 m where None.
         tilt_deg: standard deviation of pitch and of roll, which change slowly.
 
@@ -78,23 +81,26 @@ def walk(
         InputError: a room cannot be reached or is too narrow to walk in.
     """
     height = camera_height(rng, camera_height_m)
-    first = int(rng.integers(len(building.rooms))) if start is None else start
+    first = first_room(building, rng, start)
     path = path_through(building, rng, first, step_m * (keyframes_per_room or 0))
-    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path[:, :2], axis=0).T))])
     at = _strides(rng, float(arc[-1]), step_m)
     headings = headings_along(path)
     wobble = np.deg2rad(8.0) * smooth_noise(rng, len(at), 12.0)
     beta = np.interp(at, arc, headings) + wobble
-    positions = np.stack([np.interp(at, arc, path[:, k]) for k in range(2)], axis=1)
+    places = np.stack([np.interp(at, arc, path[:, k]) for k in range(3)], axis=1)
     bob = 0.015 * smooth_noise(rng, len(at), 1.0)
     tilt = np.deg2rad(tilt_deg) * np.stack([smooth_noise(rng, len(at), 3.0) for _ in range(2)], 1)
-    return _walk(building, positions, bob, beta, tilt, height, path)
+    return _walk(building, places, bob, beta, tilt, height, path[:, :2])
 
 
 def path_through(
     building: Building, rng: np.random.Generator, start: int, least_m: float = 0.0
 ) -> FloatArray:
-    """The way of a person through all rooms, depth first, with rounded turns.
+    """The way of a person through all rooms, with rounded turns.
+
+    The rooms of a storey are visited depth first, then those of the next, up its stairs; half of
+    the people come down again at the end.
 
     Args:
         building: connected.
@@ -103,7 +109,8 @@ def path_through(
         least_m: shortest way in each room, metres.
 
     Returns:
-        (P, 2) plan, points `PATH_SPACING_M` apart.
+        (P, 3) plan, and height of the floor below above the first storey's; points are
+        `PATH_SPACING_M` apart in the plan.
 
     Raises:
         InputError: a room cannot be reached or is too narrow to walk in.
@@ -136,41 +143,51 @@ def stills(
         InputError: a room cannot be reached or is too narrow to stand in.
     """
     height = camera_height(rng, camera_height_m)
-    first = int(rng.integers(len(building.rooms))) if start is None else start
+    first = first_room(building, rng, start)
     order = _visits(building, rng, first)
-    places = []
+    places: list[FloatArray] = []
     for room in dict.fromkeys(order):
         count = int(rng.integers(per_room[0], per_room[1] + 1))
-        places += _waypoints(_Footing(building, room), rng, count)
-    positions = np.array(places)
-    beta = rng.uniform(-np.pi, np.pi, len(positions))
-    bob = 0.005 * rng.standard_normal(len(positions))
-    tilt = np.zeros((len(positions), 2))
-    return _walk(building, positions, bob, beta, tilt, height, positions)
+        spots = _waypoints(_Footing(building, room), rng, count)
+        places += [np.append(spot, building.floor_m(room)) for spot in spots]
+    standing = np.array(places)
+    beta = rng.uniform(-np.pi, np.pi, len(standing))
+    bob = 0.005 * rng.standard_normal(len(standing))
+    tilt = np.zeros((len(standing), 2))
+    return _walk(building, standing, bob, beta, tilt, height, standing[:, :2])
 
 
-def locate(building: Building, positions: FloatArray, headings: FloatArray) -> IntArray:
+def locate(
+    building: Building,
+    positions: FloatArray,
+    headings: FloatArray,
+    eyes_m: FloatArray | None = None,
+) -> IntArray:
     """The rooms that cameras' views are of.
 
     Args:
         building: where they are.
         positions: (N, 2) plan, metres.
         headings: (N,) rad, from z towards x.
+        eyes_m: (N,) how high they are above the first storey's floor; all on that where None.
 
     Returns:
-        (N,) index of the room each stands in; in a doorway, of the room it looks into.
+        (N,) index of the room each stands in; in a doorway, of the room it looks into; on stairs,
+        of the lower room until it looks down on the upper one's floor.
 
     Raises:
         InputError: one stands in no room and no passage.
     """
     x, z = positions.T
+    level = np.zeros(len(positions)) if eyes_m is None else building.levels_below(eyes_m)
     found = np.full(len(positions), -1)
     for passage in building.passages:
         inside = shapely.intersects_xy(shapely.Polygon(passage.area).buffer(1e-9), x, z)
+        inside &= level == building.rooms[passage.rooms[0]].level
         ahead = np.sin(headings) * passage.outward[0] + np.cos(headings) * passage.outward[1] >= 0
         found[inside] = np.array(passage.rooms)[ahead[inside].astype(np.int64)]
     for k, room in enumerate(building.rooms):
-        found[shapely.intersects_xy(room.floor, x, z)] = k
+        found[shapely.intersects_xy(room.floor, x, z) & (level == room.level)] = k
     if (found < 0).any():
         lost = positions[found < 0][0]
         raise InputError("camera", f"({lost[0]:.3f}, {lost[1]:.3f})", "a place inside a room")
@@ -191,16 +208,23 @@ class _Footing:
     """The floor of one room where one may walk, and the shortest ways over it."""
 
     def __init__(self, building: Building, room: int) -> None:
+        stairs = [(k, s) for k, s in enumerate(building.stairs) if room in s.rooms]
         self.outline = building.rooms[room].floor
+        for _, flight in stairs:
+            self.outline = self.outline.difference(shapely.Polygon(flight.area))
+        self.floor_m = building.floor_m(room)
         self.thresholds: dict[int, FloatArray] = {}
+        self.landings: dict[int, FloatArray] = {}
         passages = [(k, building.passages[k]) for k, _ in building.neighbours(room)]
         for clearance in _CLEARANCES_M:
             floor = self.outline.buffer(-clearance, join_style="mitre")
             ends = {k: _threshold(p, p.side(room), clearance + 1e-4) for k, p in passages}
+            landings = {k: _landing(s, s.rooms.index(room), clearance + 1e-4) for k, s in stairs}
             if isinstance(floor, shapely.Polygon) and not floor.is_empty:
                 self.floor = floor.buffer(1e-6, join_style="mitre")
-                if all(self.floor.covers(shapely.Point(end)) for end in ends.values()):
-                    self.thresholds = ends
+                places = (*ends.values(), *landings.values())
+                if all(self.floor.covers(shapely.Point(end)) for end in places):
+                    self.thresholds, self.landings = ends, landings
                     break
         else:
             raise InputError(f"room {room}", "too narrow to walk in", "0.2 m and reachable doors")
@@ -245,8 +269,38 @@ def _threshold(passage: Passage, side: int, distance: float) -> FloatArray:
     return np.asarray(passage.faces[side].mean(axis=0) + distance * inwards)
 
 
+def _landing(stairs: Stairs, end: int, distance: float) -> FloatArray:
+    """The point `distance` before the foot (end 0) or beyond the head (1) of stairs."""
+    return np.asarray(stairs.line[end] + (-distance, distance)[end] * stairs.along)
+
+
 def _visits(building: Building, rng: np.random.Generator, start: int) -> list[int]:
-    """Rooms in the order of a depth-first walk that ends in the last new room."""
+    """Rooms in the order of a walk, each a neighbour of the last or up or down the stairs."""
+    order = _storey_visits(building, rng, start)
+    for lower, upper in (stairs.rooms for stairs in building.stairs):
+        order += _rooms_between(building, order[-1], lower)
+        order += _storey_visits(building, rng, upper)
+    if building.stairs and rng.random() < _COMES_DOWN:
+        for lower, upper in (stairs.rooms for stairs in building.stairs[::-1]):
+            order += [*_rooms_between(building, order[-1], upper), lower]
+        order += _rooms_between(building, order[-1], start)
+    return order
+
+
+def _rooms_between(building: Building, start: int, end: int) -> list[int]:
+    """The rooms of one storey on the way from `start`, which is left out, to `end`."""
+    ways = {start: [start]}
+    todo = [start]
+    for room in todo:
+        for _, behind in building.neighbours(room):
+            if behind not in ways:
+                ways[behind] = [*ways[room], behind]
+                todo.append(behind)
+    return ways[end][1:]
+
+
+def _storey_visits(building: Building, rng: np.random.Generator, start: int) -> list[int]:
+    """Rooms of a storey in the order of a depth-first walk that ends in the last new room."""
     order, seen, last_new = [start], {start}, 0
 
     def visit(room: int) -> None:
@@ -262,7 +316,8 @@ def _visits(building: Building, rng: np.random.Generator, start: int) -> list[in
             order.append(room)
 
     visit(start)
-    if len(seen) < len(building.rooms):
+    level = building.rooms[start].level
+    if len(seen) < sum(room.level == level for room in building.rooms):
         raise InputError(building.name, "rooms that cannot be reached", "a connected building")
     return order[: max(last_new, 1)]
 
@@ -273,13 +328,14 @@ def _route(
     start: int,
     least_m: float,
 ) -> list[FloatArray]:
-    """Corners of the way through all rooms."""
+    """Corners of the way through all rooms: plan, and height of the floor."""
     footings = [_Footing(building, k) for k in range(len(building.rooms))]
     order = _visits(building, rng, start)
-    route = [_waypoints(footings[start], rng, 1)[0]]
+    route = _raised(_waypoints(footings[start], rng, 1), footings[start].floor_m)
     seen: set[int] = set()
     for k, room in enumerate(order):
-        if room not in seen:
+        # Who has come down the stairs looks round once more.
+        if room not in seen or k + 1 == len(order):
             seen.add(room)
             _tour(footings[room], rng, route, least_m)
         if k + 1 < len(order):
@@ -296,10 +352,11 @@ def _tour(
         count = int(np.clip(np.rint(footing.outline.area / 5.0), 2, 6))
         todo = _waypoints(footing, rng, count)
         while todo:
-            gaps = [float(np.hypot(*(place - route[-1]))) for place in todo]
-            way = footing.way(route[-1], todo.pop(int(np.argmin(gaps))))
-            walked += sum(float(np.hypot(*(b - a))) for a, b in pairwise([route[-1], *way]))
-            route += way
+            here = route[-1][:2]
+            gaps = [float(np.hypot(*(place - here))) for place in todo]
+            way = footing.way(here, todo.pop(int(np.argmin(gaps))))
+            walked += sum(float(np.hypot(*(b - a))) for a, b in pairwise([here, *way]))
+            route += _raised(way, footing.floor_m)
         if walked >= least_m or walked < 0.1:
             return
 
@@ -307,10 +364,28 @@ def _tour(
 def _cross(
     building: Building, footings: list[_Footing], route: list[FloatArray], room: int, to: int
 ) -> None:
-    """Appends the way from the route's end through the passage to a neighbouring room."""
-    index = next(k for k, behind in building.neighbours(room) if behind == to)
-    near, far = footings[room].thresholds[index], footings[to].thresholds[index]
-    route += [*footings[room].way(route[-1], near), far]
+    """Appends the way from the route's end through a passage or over stairs to another room."""
+    here, there = footings[room], footings[to]
+    if building.rooms[room].level == building.rooms[to].level:
+        index = next(k for k, behind in building.neighbours(room) if behind == to)
+        near, far = here.thresholds[index], there.thresholds[index]
+        ends: list[FloatArray] = []
+    else:
+        index = next(k for k, s in enumerate(building.stairs) if {room, to} == set(s.rooms))
+        near, far = here.landings[index], there.landings[index]
+        stairs = building.stairs[index]
+        up = [
+            np.append(end, building.floor_m(k))
+            for end, k in zip(stairs.line, stairs.rooms, strict=True)
+        ]
+        ends = up if room == stairs.rooms[0] else up[::-1]
+    route += _raised(here.way(route[-1][:2], near), here.floor_m)
+    route += [*ends, *_raised([far], there.floor_m)]
+
+
+def _raised(points: list[FloatArray], floor_m: float) -> list[FloatArray]:
+    """(2,) plan points with the height of their floor as a third coordinate."""
+    return [np.append(point, floor_m) for point in points]
 
 
 def _waypoints(footing: _Footing, rng: np.random.Generator, count: int) -> list[FloatArray]:
@@ -333,12 +408,12 @@ def _waypoints(footing: _Footing, rng: np.random.Generator, count: int) -> list[
 
 
 def _rounded(corners: FloatArray) -> FloatArray:
-    """The polyline with its corners cut by parabolas that begin at most `_TURN_M` before them."""
-    steps = np.hypot(*np.diff(corners, axis=0).T)
+    """The way with its corners cut by parabolas that begin at most `_TURN_M` before them."""
+    steps = np.hypot(*np.diff(corners[:, :2], axis=0).T)
     kept = corners[np.concatenate([[True], steps > 1e-6])]
     if len(kept) < 3:
         return np.asarray(kept)
-    steps = np.hypot(*np.diff(kept, axis=0).T)
+    steps = np.hypot(*np.diff(kept[:, :2], axis=0).T)
     t = np.linspace(0, 1, 16)[:, None]
     pieces = [kept[:1]]
     for k in range(1, len(kept) - 1):
@@ -350,9 +425,9 @@ def _rounded(corners: FloatArray) -> FloatArray:
 
 
 def _resampled(path: FloatArray, spacing: float) -> FloatArray:
-    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    arc = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path[:, :2], axis=0).T))])
     at = np.linspace(0, arc[-1], max(int(arc[-1] / spacing), 1) + 1)
-    return np.stack([np.interp(at, arc, path[:, k]) for k in range(2)], axis=1)
+    return np.stack([np.interp(at, arc, column) for column in path.T], axis=1)
 
 
 def _strides(rng: np.random.Generator, length: float, step_m: float) -> FloatArray:
@@ -392,21 +467,28 @@ def camera_height(rng: np.random.Generator, given: float | None) -> float:
     return drawn if given is None else given
 
 
+def first_room(building: Building, rng: np.random.Generator, given: int | None) -> int:
+    """Index of the room a walk begins in: as given, else any of the first storey."""
+    ground = [k for k, room in enumerate(building.rooms) if room.level == 0]
+    return ground[int(rng.integers(len(ground)))] if given is None else given
+
+
 def _walk(
     building: Building,
-    positions: FloatArray,
+    places: FloatArray,
     bob: FloatArray,
     beta: FloatArray,
     tilt: FloatArray,
     height: float,
     path: FloatArray,
 ) -> Walk:
-    n = len(positions)
-    translations = np.stack([positions[:, 0], bob, positions[:, 1]], axis=1)
+    n, floors_m = len(places), places[:, 2]
+    translations = np.stack([places[:, 0], bob - floors_m, places[:, 1]], axis=1)
     rotations = about_y(beta) @ about_x(tilt[:, 0]) @ about_z(tilt[:, 1])
     labels = tuple(f"{k:04d}" for k in range(n))
     trajectory = Trajectory(labels, rotations, translations)
-    return Walk(trajectory, locate(building, positions, beta), height, path)
+    rooms = locate(building, places[:, :2], beta, height + floors_m)
+    return Walk(trajectory, rooms, height, path)
 
 
 def about_y(angle: FloatArray) -> FloatArray:

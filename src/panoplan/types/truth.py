@@ -17,12 +17,31 @@ class TrueRoom:
         label: what it is called, may be empty.
         polygon: (N, 2) open polygon, counter-clockwise, metres, plan frame.
         holes: open polygons inside it that are not room.
+        level: its storey, from 0.
     """
 
     id: str
     label: str
     polygon: FloatArray
     holes: tuple[FloatArray, ...] = ()
+    level: int = 0
+
+
+@dataclass(frozen=True)
+class TrueLevels:
+    """The storeys of a scene.
+
+    Attributes:
+        floors_m: how high each storey's floor lies above that of storey 0, metres.
+        doors: storey of each door.
+        openings: storey of each opening.
+        windows: storey of each window.
+    """
+
+    floors_m: tuple[float, ...]
+    doors: tuple[int, ...] = ()
+    openings: tuple[int, ...] = ()
+    windows: tuple[int, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,6 +56,8 @@ class TruePlan:
         windows: (2, 2) segments.
         axis: (2,) direction made axis-parallel for the paper's corner metric, or None.
         camera_height_m: metres, or None.
+        levels: of a scene that is known to have several storeys; the world's origin is as high
+            above storey 0 as its cameras. None: all is one.
     """
 
     rooms: tuple[TrueRoom, ...]
@@ -46,6 +67,7 @@ class TruePlan:
     windows: tuple[FloatArray, ...] = ()
     axis: FloatArray | None = None
     camera_height_m: float | None = None
+    levels: TrueLevels | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -102,3 +102,10 @@ def test_nothing_is_a_plan_too():
     failed = RoomShape(None, "its views agree on no floor")
     assert partition([failed], CONFIG) == ((failed,), ())
     assert partition([], CONFIG) == ((), ())
+
+
+def test_an_outline_that_crosses_itself_is_cut_like_others():
+    bow = np.array([[0, 0], [2, 0], [2, 2], [1, -0.5], [0, 2]], dtype=float)
+    crossed = RoomShape(bow, None, sigmas=np.full(5, 0.05))
+    out, _ = partition([_room(0.5, -1, 1.5, 1), crossed], CONFIG)
+    assert _overlap([shape for shape in out if shape.polygon is not None]) < 1e-9

@@ -242,7 +242,7 @@ _MEETING_SINE = 0.2
 def _apart(shapes: Sequence[RoomShape], config: PartitionConfig) -> list[RoomShape]:
     """Takes what two rooms claim from the one whose walls there are less sure."""
     out = list(shapes)
-    regions = [None if s.polygon is None else shapely.Polygon(s.polygon, s.holes) for s in shapes]
+    regions = [_floor(shape) for shape in shapes]
     tree = shapely.STRtree([region or shapely.Polygon() for region in regions])
     for one, region in enumerate(regions):
         if region is None:
@@ -254,12 +254,20 @@ def _apart(shapes: Sequence[RoomShape], config: PartitionConfig) -> list[RoomSha
             common = first.intersection(second)
             if common.area <= 0.0:
                 continue
-            loses = other
+            loses, floors = other, (second, first)
             if _doubt(out[one], common) > _doubt(out[other], common):
-                loses = one
-            keeps = one + other - loses
-            out[loses], regions[loses] = _without(out[loses], regions[keeps], config)
+                loses, floors = one, (first, second)
+            out[loses] = _without(out[loses], *floors, config)
+            regions[loses] = _floor(out[loses])
     return out
+
+
+def _floor(shape: RoomShape) -> shapely.Geometry | None:
+    """The area of a room, also of an outline that touches or crosses itself."""
+    if shape.polygon is None:
+        return None
+    area = shapely.Polygon(shape.polygon, shape.holes)
+    return area if area.is_valid else shapely.make_valid(area, method="structure")
 
 
 def _doubt(shape: RoomShape, common: shapely.Geometry) -> float:
@@ -285,13 +293,11 @@ _NEAR_CH = 0.01
 
 
 def _without(
-    shape: RoomShape, other: shapely.Polygon | None, config: PartitionConfig
-) -> tuple[RoomShape, shapely.Polygon | None]:
-    """A room less another and the thinnest wall around it."""
-    assert shape.polygon is not None
-    assert other is not None
+    shape: RoomShape, floor: shapely.Geometry, other: shapely.Geometry, config: PartitionConfig
+) -> RoomShape:
+    """A room, whose floor is given, less another and the thinnest wall around it."""
     grown = other.buffer(config.min_thickness_ch, join_style="mitre")
-    left = shapely.Polygon(shape.polygon, shape.holes).difference(grown)
+    left = floor.difference(grown)
     pieces = [p for p in shapely.get_parts(left) if isinstance(p, shapely.Polygon)]
     piece = max(pieces, key=lambda p: float(p.area), default=shapely.Polygon())
     # Without spikes thinner than any wall.
@@ -300,14 +306,13 @@ def _without(
     parts = [p for p in shapely.get_parts(piece) if isinstance(p, shapely.Polygon)]
     piece = max(parts, key=lambda p: float(p.area), default=shapely.Polygon()).normalize()
     if piece.area < config.min_area_ch2:
-        return RoomShape(None, "what it claims belongs to other rooms"), None
+        return RoomShape(None, "what it claims belongs to other rooms")
     piece = piece.simplify(_SAME_CH)
     ring = np.asarray(piece.exterior.coords)[:-1]
     ring = ring if signed_area(ring) > 0 else ring[::-1]
     holes = tuple(np.asarray(hole.coords)[:-1] for hole in piece.interiors)
     holes = tuple(h if signed_area(h) < 0 else h[::-1] for h in holes)
-    made = RoomShape(ring, None, shape.rounds, _sigmas_of(ring, shape), holes)
-    return made, shapely.Polygon(ring, holes)
+    return RoomShape(ring, None, shape.rounds, _sigmas_of(ring, shape), holes)
 
 
 _SPIKE_CH = 0.01
