@@ -81,9 +81,14 @@ def is_tour(views: Sequence[RegisteredLayout], config: MisplacedConfig) -> bool:
     if len(views) < 2:
         return False
     cameras = np.array([view.camera for view in views])
-    ranges = [np.nanmedian(np.hypot(*(view.boundary - view.camera).T)) for view in views]
+    some = views[:: math.ceil(len(views) / _RANGES)]
+    ranges = [np.nanmedian(np.hypot(*(view.boundary - view.camera).T)) for view in some]
     step = np.median(np.hypot(*np.diff(cameras, axis=0).T))
     return bool(step > config.min_step * np.nanmedian(ranges))
+
+
+_RANGES = 100
+"""The ranges of so many views tell how large rooms are."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -96,7 +96,7 @@ def outline(floor: Floor, views: Sights, config: OutlineConfig, fusion: FusionCo
         enclosed = signed_area(ring) if len(ring) else 0.0
         if enclosed < _ENCLOSED * floor.mask.sum() * fusion.cell_ch**2:
             return RoomShape(None, "its walls do not close")
-    holes = []
+    inner = []
     labels, count = ndimage.label(floor.holes)
     for number in range(1, count + 1):
         piece = np.asarray(labels == number)
@@ -104,12 +104,26 @@ def outline(floor: Floor, views: Sights, config: OutlineConfig, fusion: FusionCo
             continue
         around = _pieces(piece, -floor.field, floor.first_cell, config, fusion)
         inwards = [part[::-1] for part in reversed(around)]
-        hole, _ = _corners(_walls(inwards, columns, config))
-        if _is_simple(hole[::-1]) and shapely.Polygon(ring).contains_properly(
-            shapely.Polygon(hole)
-        ):
+        inner.append(_corners(_walls(inwards, columns, config))[0])
+    return RoomShape(ring, None, sigmas=sigmas, holes=holes_within(ring, inner))
+
+
+def holes_within(ring: FloatArray, inner: Sequence[FloatArray]) -> tuple[FloatArray, ...]:
+    """The inner outlines that are holes of an outline.
+
+    Args:
+        ring: (N, 2) simple outline.
+        inner: (M, 2) outlines, clockwise.
+
+    Returns:
+        The simple ones inside, without one that meets a larger one or the outline.
+    """
+    holes: list[FloatArray] = []
+    for hole in sorted(inner, key=lambda hole: signed_area(hole) if len(hole) else 0.0):
+        left = shapely.Polygon(ring, holes)
+        if _is_simple(hole[::-1]) and left.contains_properly(shapely.Polygon(hole)):
             holes.append(hole)
-    return RoomShape(ring, None, sigmas=sigmas, holes=tuple(holes))
+    return tuple(holes)
 
 
 _ENCLOSED = 0.8
