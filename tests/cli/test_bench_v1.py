@@ -27,7 +27,7 @@ def root(tmp_path):
 
 
 def test_the_dataset_is_scored_by_one_command(root, tmp_path, capsys):
-    words = ["bench", "v1", "--dataset", "mp3d-fpe", "--root", str(root), "--methods", "paper"]
+    words = ["bench", "--dataset", "mp3d-fpe", "--root", str(root), "--methods", "paper"]
     assert main([*words, "--quiet", "-o", str(tmp_path / "out")]) == 0
     path = tmp_path / "out" / "v1-dataset-paper.json"
     assert capsys.readouterr().out.splitlines()[:-1] == [str(path)]
@@ -55,6 +55,15 @@ def test_usage(tmp_path, monkeypatch, capsys, words, told):
     monkeypatch.chdir(tmp_path)
     assert main(["bench", "v1", "--quiet", *words]) == 2
     assert told in capsys.readouterr().err
+
+
+def test_a_root_that_is_another_dataset_is_told(tmp_path, capsys):
+    (tmp_path / "home" / "layouts_pred").mkdir(parents=True)
+    words = ["bench", "--dataset", "mp3d-fpe", "--root", str(tmp_path), "-o", str(tmp_path / "x")]
+    assert main([*words, "--quiet"]) == 2
+    assert "<root>/<scene>/<version>/vo*/keyframe_list.txt" in capsys.readouterr().err
+    assert main(["bench"]) == 2
+    assert "nothing to measure" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

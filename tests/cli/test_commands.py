@@ -67,6 +67,8 @@ def test_simulate_makes_what_run_reads(tmp_path, capsys):
     flat = tmp_path / "flat"
     assert main(["simulate", "-o", str(flat), "--seed", "3", "--rooms", "5", "--stills"]) == 0
     assert main(["run", str(flat), "-o", str(tmp_path / "plan"), "--quiet"]) == 0
+    true, made = sorted((flat / "layouts_gt").iterdir()), sorted((flat / "layouts_pred").iterdir())
+    assert [path.name for path in true] == [path.name for path in made]
 
 
 def test_simulate_makes_scenes_of_a_family(tmp_path, capsys):

@@ -97,6 +97,11 @@ def test_houses_have_all_that_homes_have(houses):
         assert np.mean([len(h) > 1 for h in heights]) > 0.7
         skewed = np.mean([off_square(house) > np.deg2rad(3) for house in houses[family]])
         assert 0.2 < skewed < 0.8
+        shapes = [turns_of(room.polygon) for room in rooms]
+        assert sum(shape == "LLLLLR" for shape in shapes) > 10  # L
+        assert sum(shape == "LLLLLLRR" for shape in shapes) > 0  # U
+        assert sum(shape == "LLLLRLLR" for shape in shapes) > 0  # T
+        assert any(has_a_bay(room.polygon) for room in rooms)
     courts = sum(has_a_court(house) for house in houses["mp3d-fpe"])
     assert courts >= 3
 
@@ -125,6 +130,13 @@ def test_a_scene_is_decided_by_family_and_seed_and_its_way_not_by_the_grade():
     assert set(mild.keyframe_rooms) == set(range(len(mild.building.rooms)))
 
 
+def test_units_are_spread_over_two_decades():
+    units = [simulate_scene("flat", seed, "exact", as_stills=True).metres_per_su for seed in SEEDS]
+    assert 0.1 <= min(units) < 0.2
+    assert 5 < max(units) <= 10
+    assert np.mean(np.log10(units)) == pytest.approx(0.0, abs=0.25)
+
+
 def test_unknown_families_and_negative_seeds_are_refused():
     with pytest.raises(InputError, match=r"mp3d-fpe \| flat"):
         make_building("castle", 0)
@@ -139,6 +151,29 @@ def round_walls(polygon):
     turn = np.arctan2(cross, (before * after).sum(axis=1))
     gentle = (turn > np.deg2rad(10)) & (turn < np.deg2rad(50))
     return bool(np.max(sum(np.roll(gentle, k).astype(int) for k in range(4))) == 4)
+
+
+def turns_of(polygon):
+    """Left and right turns round a polygon, beginning where that reads first in the alphabet."""
+    before, after = polygon - np.roll(polygon, 1, axis=0), np.roll(polygon, -1, axis=0) - polygon
+    left = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] > 0
+    text = "".join("L" if turn else "R" for turn in left)
+    return min(text[k:] + text[:k] for k in range(len(text)))
+
+
+def has_a_bay(polygon):
+    """Whether a wall of at most 4.2 m stands out between two that are slanted alike."""
+    edges = np.roll(polygon, -1, axis=0) - polygon
+    length = np.hypot(*edges.T)
+    angle = np.arctan2(edges[:, 1], edges[:, 0])
+    turn = np.rad2deg(np.angle(np.exp(1j * (np.roll(angle, -1) - angle))))
+    # Out by a right turn, left twice along the bay, and back by a right turn.
+    for k in range(len(polygon)):
+        a, b, c, d = (turn[(k + i) % len(turn)] for i in range(4))
+        front = length[(k + 2) % len(turn)]
+        if a < -20 and b > 20 and c > 20 and d < -20 and front < 4.2 and abs(a + b) < 2:
+            return True
+    return False
 
 
 def off_square(house):

@@ -8,6 +8,7 @@ from panoplan.errors import InputError
 from panoplan.geometry.sphere import column_heading, rays
 from panoplan.simulate.buildings import make_corridor_building, make_flat, rectangle, single_room
 from panoplan.simulate.noise import HARD
+from panoplan.simulate.odometry import in_units
 from panoplan.simulate.scene import simulate, simulate_flat, true_plan
 
 
@@ -42,6 +43,26 @@ def test_exact_layouts_cast_by_their_poses_lie_on_the_true_walls(seed):
     assert len(inside) > 0.8 * len(scene.keyframes)
     for k in inside[::5]:
         assert wall_distance(scene, k).max() < 1e-3
+
+
+def test_the_true_layout_is_the_room_closed_at_its_doors():
+    scene = simulate_flat(3, "hard", tilt_deg=1.0)
+    clean = replace(
+        scene,
+        keyframes=tuple(
+            replace(keyframe, layout=layout, pose=pose)
+            for keyframe, layout, pose in zip(
+                scene.keyframes,
+                scene.true_layouts,
+                in_units(scene.truth.trajectory, scene.metres_per_su),
+                strict=True,
+            )
+        ),
+    )
+    inside = [k for k in range(len(clean.keyframes)) if inside_room(clean, k)][::5]
+    off = np.concatenate([wall_distance(clean, k) for k in inside])
+    assert np.quantile(off, 0.99) < 0.005
+    assert np.quantile(np.concatenate([wall_distance(scene, k) for k in inside]), 0.9) > 0.1
 
 
 def test_tilted_cameras_see_the_same_walls():

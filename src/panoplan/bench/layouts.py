@@ -15,14 +15,13 @@ import numpy as np
 from panoplan.errors import InputError
 from panoplan.formats.image import Pixels, read_panorama
 from panoplan.formats.layout_npz import read_layout_npz
-from panoplan.formats.sequence import DESCRIPTION, read_sequence
+from panoplan.formats.sequence import DESCRIPTION, TRUE_LAYOUTS, read_sequence
 from panoplan.layouts.dense import layout, likely_spans
 from panoplan.layouts.onnx import OnnxLayouts
 from panoplan.pipeline import Progress
 from panoplan.types.arrays import BoolArray, FloatArray
 from panoplan.types.layout import Layout, Spans
 
-TRUE_LAYOUTS = "layouts_gt"
 ROWS = 512
 UNKNOWN_ROWS = 46.0
 """What a column counts, in rows, of which the network says nothing: a constant guess's error."""

@@ -30,6 +30,7 @@ def add_parser(commands: Any) -> None:
     )
     parser.add_argument(
         "what",
+        nargs="?",
         choices=[
             "v1", "accuracy", "metric", "home", "misplaced", "difficulty", "runtime", "odometry",
             "tour", "layouts", "exports", "model", "table",
@@ -70,8 +71,10 @@ def add_parser(commands: Any) -> None:
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
-    if options.what == "v1":
+    if options.what == "v1" or (options.what is None and options.dataset is not None):
         return bench_v1.act(options)
+    if options.what is None:
+        raise InputError("bench", "nothing to measure", "bench v1, bench accuracy … (see --help)")
     from panoplan.bench import (
         accuracy,
         difficulty,

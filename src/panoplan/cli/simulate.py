@@ -148,7 +148,14 @@ def _write(
 
     if options.format == "sequence":
         write_sequence(
-            folder, scene.name, scene.keyframes, scene.truth, scene.camera_height_m, images
+            folder,
+            scene.name,
+            scene.keyframes,
+            scene.truth,
+            scene.camera_height_m,
+            images,
+            # Those of photographs know more, and are there already.
+            scene.true_layouts if images is None else None,
         )
         return
     _write_mp3d_fpe(scene, folder if options.scenes is None else folder / "0", seed)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import collections
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from collections.abc import Sequence as Items
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -20,6 +20,7 @@ from panoplan.formats.tum import write_tum
 from panoplan.geometry.polygons import counter_clockwise
 from panoplan.types.arrays import FloatArray, frozen_array
 from panoplan.types.keyframe import Keyframe
+from panoplan.types.layout import Layout
 from panoplan.types.pose import Trajectory
 from panoplan.types.truth import GroundTruth, TrueLevels, TruePlan, TrueRoom
 
@@ -28,6 +29,7 @@ TRAJECTORY = "trajectory.tum"
 LAYOUTS = "layouts_pred"
 TRUE_TRAJECTORY = "trajectory_gt.tum"
 TRUE_PLAN = "floorplan_gt.json"
+TRUE_LAYOUTS = "layouts_gt"
 _LIMIT = 64 * 2**20
 _NAME_LIMIT = 200
 
@@ -131,6 +133,7 @@ def write_sequence(
     truth: GroundTruth | None = None,
     camera_height_m: float | None = None,
     images: Mapping[str, str] | None = None,
+    true_layouts: Iterable[Layout] | None = None,
 ) -> None:
     """Writes a sequence folder; sequence.json, which makes it one, comes last.
 
@@ -142,6 +145,7 @@ def write_sequence(
             keyframe, in the same order, or is None.
         camera_height_m: metres, or None.
         images: path within the folder of each keyframe's image, by its id, where there are any.
+        true_layouts: of each keyframe, written to layouts_gt/, where they are known.
 
     Raises:
         InputError: no keyframe, ids that stand twice or are no file names, a true trajectory of
@@ -165,6 +169,10 @@ def write_sequence(
     )
     if truth is not None:
         _write_truth(folder, truth, orders)
+    if true_layouts is not None:
+        make_folder(folder / TRUE_LAYOUTS)
+        for keyframe, layout in zip(keyframes, true_layouts, strict=True):
+            write_layout_npz(folder / TRUE_LAYOUTS / f"{keyframe.id}.npz", layout)
     description = {
         "name": name,
         "layout_size": [widths[0] // 2, widths[0]] if len(set(widths)) == 1 else None,

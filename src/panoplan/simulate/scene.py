@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Literal
 
@@ -18,7 +19,7 @@ from panoplan.simulate.walks import Walk, about_y, stills, walk
 from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.layout import Layout
-from panoplan.types.pose import Pose, Trajectory
+from panoplan.types.pose import Trajectory
 from panoplan.types.truth import GroundTruth, TrueLevels, TruePlan, TrueRoom
 
 Grade = Literal["exact", "mild", "hard", "measured"]
@@ -40,6 +41,7 @@ class SimulatedScene:
         noise: the grade it was made with.
         building: what was walked through.
         keyframe_rooms: index of the room each keyframe's view is of.
+        views: what a level camera in each keyframe's place and heading truly sees.
         frames: the true pose of every frame of the video, labelled with its number from 1; None
             where there is no video.
     """
@@ -52,12 +54,22 @@ class SimulatedScene:
     noise: NoiseModel
     building: Building
     keyframe_rooms: tuple[int, ...]
+    views: tuple[View, ...]
     frames: Trajectory | None = None
 
     @property
     def ch_per_su(self) -> float:
         """Camera heights a trajectory unit: what scale recovery should find."""
         return self.metres_per_su / self.camera_height_m
+
+    @property
+    def true_layouts(self) -> Iterator[Layout]:
+        """The true layout of each keyframe: its room, closed at doors and openings."""
+        true = self.truth.trajectory
+        assert true is not None
+        for view, rotation in zip(self.views, true.rotations, strict=True):
+            heading = heading_of(rotation)
+            yield _as_held(view.closed_layout, _level_from_cam(rotation, heading))
 
     @property
     def odometry(self) -> Trajectory:
@@ -200,13 +212,10 @@ def recorded(
     odometry = in_units(odometry, metres_per_su)
     caster = ViewCaster(building)
     rngs = noise_rng.spawn(len(way.trajectory))
+    made = [noisy_view(caster, way, k, model, rngs[k], width) for k in kept.tolist()]
     keyframes = tuple(
-        Keyframe(
-            way.trajectory.labels[k],
-            odometry[k],
-            noisy_view(caster, way, k, model, rngs[k], width)[1],
-        )
-        for k in kept.tolist()
+        Keyframe(way.trajectory.labels[k], odometry[k], layout)
+        for k, (_, layout) in zip(kept.tolist(), made, strict=True)
     )
     return SimulatedScene(
         name=f"{building.name}_{kind}_{model.name}",
@@ -217,6 +226,7 @@ def recorded(
         noise=model,
         building=building,
         keyframe_rooms=tuple(int(k) for k in way.rooms[kept]),
+        views=tuple(view for view, _ in made),
         frames=way.frames,
     )
 
@@ -336,10 +346,14 @@ def noisy_view(
     )
     view = partly_closed(view, leaks, rng)
     layout = noisy_layout(view, model, rng)
-    level_from_cam = _level_from_cam(pose, heading)
+    return view, _as_held(layout, _level_from_cam(pose.rotation, heading))
+
+
+def _as_held(layout: Layout, level_from_cam: FloatArray) -> Layout:
+    """A level camera's layout as the camera sees it that is held a little aslant."""
     if np.abs(level_from_cam - np.eye(3)).max() < 1e-12:
-        return view, layout
-    return view, tilted(layout, level_from_cam)
+        return layout
+    return tilted(layout, level_from_cam)
 
 
 def _before(passage: Passage, position: FloatArray) -> bool:
@@ -363,5 +377,5 @@ def _some(trajectory: Trajectory, kept: IntArray) -> Trajectory:
     )
 
 
-def _level_from_cam(pose: Pose, heading: float) -> FloatArray:
-    return np.asarray(about_y(np.array([-heading]))[0] @ pose.rotation)
+def _level_from_cam(rotation: FloatArray, heading: float) -> FloatArray:
+    return np.asarray(about_y(np.array([-heading]))[0] @ rotation)

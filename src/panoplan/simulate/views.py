@@ -71,6 +71,12 @@ class View:
         return np.asarray(np.arctan2(rise, self.closed_range_m))
 
     @property
+    def closed_layout(self) -> Layout:
+        """The true layout of the room: doors and openings closed, no corners."""
+        floor = -np.arctan2(self.camera_height_m, self.closed_range_m)
+        return Layout(floor, self.ceiling_boundary)
+
+    @property
     def layout(self) -> Layout:
         """The view as a perfect network would tell it."""
         return Layout(self.floor_boundary, self.ceiling_boundary, self.corners)

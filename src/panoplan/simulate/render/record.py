@@ -11,6 +11,7 @@ import numpy as np
 from panoplan.formats.atomic import make_folder, write_bytes
 from panoplan.formats.depth import write_depth
 from panoplan.formats.layout_npz import write_layout_npz
+from panoplan.formats.sequence import TRUE_LAYOUTS
 from panoplan.geometry.rigid import heading_of
 from panoplan.simulate.render.develop import develop, draw_development, jpeg
 from panoplan.simulate.render.labels import Labeller
@@ -18,7 +19,7 @@ from panoplan.simulate.render.scene import Quality, Scene
 from panoplan.simulate.scene import SimulatedScene
 from panoplan.simulate.walks import about_y
 
-IMAGES, DEPTHS, TRUE_LAYOUTS = "images", "depth", "layouts_gt"
+IMAGES, DEPTHS = "images", "depth"
 _JPEG_QUALITY = 92
 
 
