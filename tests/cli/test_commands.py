@@ -111,6 +111,31 @@ def test_simulate_writes_whole_mp3d_fpe_scenes(tmp_path, capsys):
     assert furniture.sum() > 1000
 
 
+def test_another_walk_goes_through_the_rooms_of_a_truth(tmp_path, capsys):
+    first, again = tmp_path / "first", tmp_path / "again"
+    words = ["--family", "flat", "--seed", "7", "--stills", "--quiet"]
+    assert main(["simulate", "-o", str(first), *words]) == 0
+    words = ["--building", str(first), "--seed", "2", "--stills", "--quiet"]
+    assert main(["simulate", "-o", str(again), *words]) == 0
+    true, made = read_truth(first), read_truth(again)
+    assert len(made.plan.rooms) == len(true.plan.rooms)
+    for one, other in zip(true.plan.rooms, made.plan.rooms, strict=True):
+        assert one.label == other.label
+        np.testing.assert_allclose(one.polygon, other.polygon, atol=1e-6)
+    assert len(made.plan.doors) == len(true.plan.doors)
+    assert made.trajectory.translations[0] != pytest.approx(true.trajectory.translations[0])
+
+
+@pytest.mark.parametrize(("name", "rooms"), [("zind_000", 19), ("mp3d_levels", 2)])
+def test_a_walk_goes_through_real_rooms(tmp_path, shared_data, name, rooms):
+    source = shared_data / name
+    if name == "mp3d_levels":
+        source = next(p for p in sorted(source.iterdir()) if p.is_dir())
+    words = ["--building", str(source), "--stills", "--quiet"]
+    assert main(["simulate", "-o", str(tmp_path / "out"), *words]) == 0
+    assert len(read_truth(tmp_path / "out").plan.rooms) == rooms
+
+
 @pytest.mark.parametrize("kind", ["sequence", "mp3d-fpe"])
 def test_a_house_of_two_storeys_goes_all_the_way(tmp_path, capsys, kind):
     scene, out = tmp_path / "house" / "0", tmp_path / "plan"
@@ -137,6 +162,8 @@ def test_a_house_of_two_storeys_goes_all_the_way(tmp_path, capsys, kind):
     [
         (["--family", "flat", "--rooms", "5"], "one of them"),
         (["--storeys", "2"], "a family"),
+        (["--family", "flat", "--building", "."], "one of them"),
+        (["--building", "."], "found no truth"),
         (["--family", "flat", "--storeys", "9"], "1 to 4"),
         (["--family", "flat", "--storeys", "2", "--render", "preview"], "one of them"),
         (["--scenes", "0"], "1 to"),

@@ -12,6 +12,7 @@ from panoplan.errors import InputError
 
 if TYPE_CHECKING:
     from panoplan.pipeline import Progress
+    from panoplan.simulate.buildings import Building
     from panoplan.simulate.scene import Grade, SimulatedScene
 
 _MOST_SCENES = 10_000
@@ -32,6 +33,11 @@ def add_parser(commands: Any) -> None:
         choices=["mp3d-fpe", "flat"],
         help="large houses, or flats of a real size (default: a plain flat of few kinds of rooms)",
     )
+    parser.add_argument(
+        "--building", type=Path, metavar="FOLDER",
+        help="a walk through rooms and doors that a folder's truth has; without doors, through "
+        "those that its cameras must have used",
+    )  # fmt: skip
     parser.add_argument("--seed", type=int, default=0, help="of building and walk (default: 0)")
     parser.add_argument(
         "--scenes", type=int, metavar="K", help="seeds from --seed on, a folder each in the output"
@@ -39,7 +45,7 @@ def add_parser(commands: Any) -> None:
     parser.add_argument(
         "--grade",
         choices=["exact", "mild", "hard", "measured"],
-        help="of the errors (default: measured for a family, mild for a plain flat)",
+        help="of the errors (default: measured for a family or --building, mild for a plain flat)",
     )
     parser.add_argument(
         "--storeys", type=int, default=1, metavar="N",
@@ -75,6 +81,8 @@ def act(options: argparse.Namespace) -> int:
         raise InputError("--scenes", str(options.scenes), f"1 to {_MOST_SCENES}")
     if options.family is not None and options.rooms is not None:
         raise InputError("--rooms", "with --family", "one of them: a family draws its rooms")
+    if options.building is not None and (options.family or options.rooms):
+        raise InputError("--building", "--family or --rooms", "one of them")
     if options.storeys != 1 and options.family is None:
         raise InputError("--storeys", "no --family", "a family, whose buildings are stacked")
     if options.storeys != 1 and options.render:
@@ -102,11 +110,14 @@ def act(options: argparse.Namespace) -> int:
 
 
 def _scene(options: argparse.Namespace, seed: int) -> SimulatedScene:
-    from panoplan.simulate.families import simulate_scene
+    from panoplan.simulate.families import simulate_in, simulate_scene
     from panoplan.simulate.scene import simulate_flat
 
+    grade: Grade = options.grade or "measured"
+    if options.building is not None:
+        building = _annotated(options.building)
+        return simulate_in(building, seed, grade, as_stills=options.stills)
     if options.family is not None:
-        grade: Grade = options.grade or "measured"
         return simulate_scene(
             options.family, seed, grade, as_stills=options.stills, storeys=options.storeys
         )
@@ -117,6 +128,19 @@ def _scene(options: argparse.Namespace, seed: int) -> SimulatedScene:
         rooms=options.rooms,
         step_m=options.step,
     )
+
+
+def _annotated(folder: Path) -> Building:
+    """The part of a folder's building that can be walked."""
+    from panoplan.datasets.detect import read_truth
+    from panoplan.simulate.annotated import annotated_building, largest_part
+
+    truth = read_truth(folder)
+    if truth.plan.levels is not None:
+        raise InputError(folder, "several storeys", "rooms of one")
+    cameras = truth.trajectory
+    ways = None if cameras is None else cameras.translations[:, [0, 2]]
+    return largest_part(annotated_building(folder.resolve().name, truth.plan, ways=ways))
 
 
 def _photographed(

@@ -183,6 +183,39 @@ def simulate_scene(
     building = make_building(family, seed, storeys)
     # The scenes of one storey are frozen, and so is what they are drawn by.
     root = [FAMILIES.index(family), seed, 1, *([storeys] if storeys > 1 else [])]
+    return _recorded(building, root, grade, as_stills, metres_per_su)
+
+
+def simulate_in(
+    building: Building,
+    seed: int,
+    grade: Grade | NoiseModel = "measured",
+    *,
+    as_stills: bool = False,
+) -> SimulatedScene:
+    """A scene in a given building, filmed as those of the families are.
+
+    Args:
+        building: connected.
+        seed: of the walk and the errors, ≥ 0.
+        grade: name of a grade, or a noise model.
+        as_stills: sparse photos instead of a walk.
+
+    Raises:
+        InputError: no such grade, a negative seed, or a building that cannot be walked.
+    """
+    if seed < 0:
+        raise InputError("seed", str(seed), "0 or more")
+    return _recorded(building, [len(FAMILIES), seed, 1], grade, as_stills, None)
+
+
+def _recorded(
+    building: Building,
+    root: list[int],
+    grade: Grade | NoiseModel,
+    as_stills: bool,
+    metres_per_su: float | None,
+) -> SimulatedScene:
     way_rng, unit_rng, noise_rng, drift_rng = (
         np.random.default_rng(s) for s in np.random.SeedSequence(root).spawn(4)
     )
