@@ -74,15 +74,16 @@ def test_a_length_scales_everything():
     assert made.rooms[0].ceiling_height == pytest.approx(1.5 * 2.5)
     assert made.rooms[0].area_sigma == pytest.approx(1.5**2 * 0.2)
     assert wall(made, "wall_00").sigma == pytest.approx(1.5 * 0.02)
+    assert wall(made, "wall_00").length_sigma == pytest.approx(1.5 * 0.03)
     assert made.doors[0].segment == pytest.approx(1.5 * before.doors[0].segment)
     assert made.trajectory[1].position == pytest.approx(1.5 * before.trajectory[1].position)
     assert made.shared_walls[0].thickness == pytest.approx(1.5 * 0.12)
 
 
 def test_two_lengths_are_weighed_by_how_sure_they_are():
-    # By the tape, and by the walls at its ends, 2 cm each.
-    one = np.hypot(0.005 / 4.2, np.hypot(0.02, 0.02) / 4.0)
-    two = np.hypot(0.005 / 2.4, np.hypot(0.02, 0.02) / 2.0)
+    # By the tape, and by the estimated lengths, 3 cm each.
+    one = np.hypot(0.005 / 4.2, 0.03 / 4.0)
+    two = np.hypot(0.005 / 2.4, 0.03 / 2.0)
     weights = np.array([one, two]) ** -2
     made = plan((square(0, 0, 4.0), square(5, 0, 2.0)))
     after = edited(made, lengths=["wall_00=4.2", "wall_10=2.4"])
@@ -104,7 +105,10 @@ def test_a_door_height():
     estimated = 1.0 + np.hypot(3.0, 0.45) * np.tan(np.deg2rad(10.0))
     assert after.factor == pytest.approx(2.0 / estimated)
     assert after.plan.metric.source == "door height"
-    assert 0.01 < after.plan.metric.sigma < 0.05
+    # The door 0.5 %; of 1.54: the place 0.02 of 0.54, the height 0.012 of 1, the row by itself.
+    marked = 1.5 * np.pi / rows * np.hypot(3.0, 0.45) / np.cos(np.deg2rad(10.0)) ** 2
+    parts = [0.01 / 2.0, *(np.array([0.02 * (estimated - 1), 0.012, marked]) / estimated)]
+    assert after.plan.metric.sigma == pytest.approx(np.linalg.norm(parts), rel=0.01)
 
 
 @pytest.mark.parametrize("change", [renumbered, lambda made: scaled_scale(made, 1.3)])

@@ -70,6 +70,32 @@ def test_a_declared_size_is_checked_before_it_is_unpacked(tmp_path):
         read_panorama(tmp_path / "a.png")
 
 
+@pytest.mark.parametrize("name", ["a.png", "a.jpg"])
+def test_what_is_wider_than_wanted_is_made_smaller(tmp_path, name):
+    ramp = np.broadcast_to(np.linspace(0, 255, 1024)[None, :, None], (512, 1024, 3))
+    path = saved(tmp_path / name, Image.fromarray(ramp.astype(np.uint8)))
+    for width in (640, 512, 300):
+        read = read_panorama(path, widest=width)
+        assert read.shape == (width // 2, width, 3)
+        expected = 255 * ((np.arange(width) + 0.5) * 1024 / width - 0.5) / 1023
+        assert np.abs(read[9, 4:-4, 0] - expected[4:-4]).max() < 4
+    assert read_panorama(path, widest=4096).shape == (512, 1024, 3)
+
+
+def test_the_least_size_is_the_callers(tmp_path):
+    path = saved(tmp_path / "a.png", Image.new("RGB", (64, 32)))
+    assert read_panorama(path, smallest=(32, 16)).shape == (32, 64, 3)
+    with pytest.raises(InputError, match="at least 66×33 px"):
+        read_panorama(path, smallest=(66, 33))
+
+
+def test_only_pictures_are_opened(tmp_path):
+    script = b"%!PS-Adobe-3.0 EPSF-3.0\n%%BoundingBox: 0 0 512 256\n"
+    (tmp_path / "a.jpg").write_bytes(script)
+    with pytest.raises(InputError, match="no readable image"):
+        read_panorama(tmp_path / "a.jpg")
+
+
 def test_smaller_is_the_mean():
     pixels = np.zeros((4, 8, 3), dtype=np.uint8)
     pixels[:, ::2] = 100

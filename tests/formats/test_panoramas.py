@@ -5,7 +5,7 @@ import pytest
 from PIL import Image
 
 from panoplan.errors import InputError
-from panoplan.formats.panoramas import find_panoramas, read_panorama
+from panoplan.formats.panoramas import find_panoramas
 
 
 def save(path, width=64, height=32):
@@ -30,25 +30,3 @@ def test_a_sequence_lists_its_images(tmp_path):
     keyframes = [{"id": "a", "image": "images/IMG_7.png", "order": 0}]
     (tmp_path / "sequence.json").write_text(json.dumps({"name": "x", "keyframes": keyframes}))
     assert find_panoramas(tmp_path, ["a"]) == {"a": path}
-
-
-def test_images_are_read_and_made_smaller(tmp_path):
-    path = save(tmp_path / "a.png")
-    assert read_panorama(path, 4096)[3, :, 0].tolist() == list(range(64))
-    assert read_panorama(path, 32).shape == (16, 32, 3)
-
-
-@pytest.mark.parametrize("size", [(64, 64), (30, 15)])
-def test_what_is_no_panorama_is_refused(tmp_path, size):
-    with pytest.raises(InputError, match="twice as wide"):
-        read_panorama(save(tmp_path / "a.png", *size), 64)
-
-
-def test_damaged_files_are_refused(tmp_path):
-    whole = save(tmp_path / "a.png").read_bytes()
-    for name, data in (("b.png", whole[:-30]), ("c.jpg", b"<html>"), ("d.png", b"")):
-        (tmp_path / name).write_bytes(data)
-        with pytest.raises(InputError):
-            read_panorama(tmp_path / name, 64)
-    with pytest.raises(InputError, match="nothing"):
-        read_panorama(tmp_path / "none.png", 64)

@@ -58,7 +58,7 @@ def plan(rooms=FLAT, cameras=CAMERAS, *, unit="m", names=None, **fields):
         if polygon is not None:
             ends = zip(polygon, np.roll(polygon, -1, axis=0), strict=True)
             walls = tuple(
-                Wall(f"wall_{10 * k + j:02d}", a, b, 0.02) for j, (a, b) in enumerate(ends)
+                Wall(f"wall_{10 * k + j:02d}", a, b, 0.02, 0.03) for j, (a, b) in enumerate(ends)
             )
         made.append(
             Room(

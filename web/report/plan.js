@@ -59,7 +59,7 @@ function describe(room) {
   const rows = room.walls.map((wall) =>
     element("tr", {}, [
       element("th", { scope: "row" }, wall.id),
-      element("td", {}, number(wall.length, 3, " m")),
+      element("td", {}, spread(wall.length, wall.length_sigma, 2, " m")),
       element("td", {}, wall.sigma === null ? "–" : `± ${number(100 * wall.sigma, 1, " cm")}`),
     ]),
   );

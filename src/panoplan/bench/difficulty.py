@@ -19,7 +19,8 @@ from panoplan.datasets.detect import read_truth
 from panoplan.datasets.scene import Scene
 from panoplan.errors import InputError
 from panoplan.estimator.state import Walk as Known
-from panoplan.formats.sequence import DESCRIPTION, read_json
+from panoplan.formats.schema import read_json
+from panoplan.formats.sequence import DESCRIPTION
 from panoplan.geometry.rigid import heading_of
 from panoplan.metrics.report import evaluate
 from panoplan.simulate.annotated import annotated_building

@@ -14,9 +14,18 @@ from panoplan.types.plan import Aperture, FloorPlan, MetricScale, MetricSource, 
 TAPE_SIGMA_M = 0.005
 """Standard deviation of a length that somebody measured."""
 
-_DOOR_SIGMA_M = 0.01
+DOOR_SIGMA_M = 0.01
+"""That of the height of a door."""
+
 _PLACE_SIGMA = 0.02
+"""Relative, of the distance from a camera to a door."""
+
+_HEIGHT_SIGMA = 0.012
+"""Relative, of one camera's height against the plan: it bobs by a centimetre or two, and the plan's
+size errs a little against the height that the layouts have in common."""
+
 _UNKNOWN_SIGMA = 0.05
+"""Camera heights, of a length whose own is not known."""
 
 
 @dataclass(frozen=True)
@@ -92,7 +101,14 @@ def rescaled(plan: FloorPlan, factor: float, metric: MetricScale) -> FloorPlan:
             polygon=None if item.polygon is None else factor * item.polygon,
             holes=tuple(factor * hole for hole in item.holes),
             walls=tuple(
-                Wall(w.id, factor * w.a, factor * w.b, _times(factor, w.sigma)) for w in item.walls
+                Wall(
+                    wall.id,
+                    factor * wall.a,
+                    factor * wall.b,
+                    _times(factor, wall.sigma),
+                    _times(factor, wall.length_sigma),
+                )
+                for wall in item.walls
             ),
             area_sigma=_times(factor**2, item.area_sigma),
             ceiling_height=_times(factor, item.ceiling_height),
@@ -128,17 +144,9 @@ def _camera_height(plan: FloorPlan) -> float:
 
 def _length_witness(known: KnownLength, wall: Wall, plan: FloorPlan) -> Witness:
     units = float(np.hypot(*(wall.b - wall.a)))
-    sigma = float(np.hypot(TAPE_SIGMA_M / known.metres, _end_sigma(wall, plan) / units))
+    own = _UNKNOWN_SIGMA * _camera_height(plan) if wall.length_sigma is None else wall.length_sigma
+    sigma = float(np.hypot(TAPE_SIGMA_M / known.metres, own / units))
     return Witness("length", known.metres, units, sigma)
-
-
-def _end_sigma(wall: Wall, plan: FloorPlan) -> float:
-    """Standard deviation of a wall's length by those of the walls that it ends at, plan units."""
-    unknown = _UNKNOWN_SIGMA * _camera_height(plan)
-    own = next(room.walls for room in plan.rooms if any(w.id == wall.id for w in room.walls))
-    place = next(k for k, w in enumerate(own) if w.id == wall.id)
-    ends = (own[place - 1], own[(place + 1) % len(own)])
-    return float(np.linalg.norm([unknown if e.sigma is None else e.sigma for e in ends]))
 
 
 def _door_witness(known: KnownDoorHeight, plan: FloorPlan) -> Witness | str:
@@ -157,7 +165,7 @@ def _door_witness(known: KnownDoorHeight, plan: FloorPlan) -> Witness | str:
     errors = (
         distance * known.sigma * (1 + slope**2),
         slope * _PLACE_SIGMA * distance,
-        _PLACE_SIGMA * height,
+        _HEIGHT_SIGMA * height,
     )
-    sigma = np.hypot(_DOOR_SIGMA_M / known.metres, float(np.linalg.norm(errors)) / units)
+    sigma = np.hypot(DOOR_SIGMA_M / known.metres, float(np.linalg.norm(errors)) / units)
     return Witness("door height", known.metres, units, float(sigma))

@@ -254,21 +254,67 @@ def _room(
     first = _first_corner(shape.polygon)
     ring = to_plan(np.roll(shape.polygon, -first, axis=0))
     sigmas: list[float | None] = [None] * len(ring)
+    length_sigmas = sigmas
     if shape.sigmas is not None:
         placed = _place_sigmas(
             shape.polygon, cameras, ch_per_su, scale_sigma, config.adjust.sigma_factor
         )
-        told = length * np.roll(np.hypot(shape.sigmas, placed), -first)
-        sigmas = [float(s) if np.isfinite(s) else None for s in told]
+        across = np.hypot(shape.sigmas, placed)
+        sigmas = _told(length * np.roll(across, -first))
+        own = _length_sigmas(shape, across, len(cameras), config)
+        length_sigmas = _told(length * np.roll(own, -first))
     walls = tuple(
-        Wall(f"wall_{walls_before + k + 1:02d}", ring[k], ring[(k + 1) % len(ring)], sigma)
-        for k, sigma in enumerate(sigmas)
+        Wall(
+            f"wall_{walls_before + k + 1:02d}",
+            ring[k],
+            ring[(k + 1) % len(ring)],
+            sigmas[k],
+            length_sigmas[k],
+        )
+        for k in range(len(ring))
     )
     holes = tuple(to_plan(hole) for hole in shape.holes)
     area_sigma = None
     if shape.sigmas is not None:
         area_sigma = length**2 * _area_sigma(shape, len(cameras), scale_sigma, config)
     return replace(made, polygon=ring, walls=walls, holes=holes, area_sigma=area_sigma)
+
+
+def _told(values: FloatArray) -> list[float | None]:
+    return [float(value) if np.isfinite(value) else None for value in values]
+
+
+_WITHIN = 0.25
+"""Walls of a room err against one another by this share of what they err by in place, as the way
+between those who saw them is a part of the whole way: on simulated flats."""
+
+
+def _length_sigmas(shape: RoomShape, across: FloatArray, views: int, config: Config) -> FloatArray:
+    """(N,) standard deviation of each wall's length in camera heights, NaN where not known.
+
+    Of the walls that it ends at, by themselves and by the ways between their cameras, and of the
+    room's own size.
+
+    Args:
+        shape: of the room.
+        across: (N,) standard deviation of where each wall lies.
+        views: how many saw the room.
+        config: settings.
+    """
+    assert shape.polygon is not None
+    assert shape.sigmas is not None
+    _, length = edge_directions(shape.polygon)
+    variance = shape.sigmas**2 + (_WITHIN * across) ** 2
+    own = _size_sigma(views, config) * length
+    return np.asarray(np.sqrt(np.roll(variance, 1) + np.roll(variance, -1) + own**2))
+
+
+def _size_sigma(views: int, config: Config) -> float:
+    """Relative standard deviation of a room's size, by the factors that its views err by.
+
+    Views from several places tell each other's factor by the odometry between them.
+    """
+    return config.registration.scale_bias / float(np.sqrt(1 + _TOLD * max(0, views - 1)))
 
 
 def _area_sigma(shape: RoomShape, views: int, scale_sigma: float, config: Config) -> float:
@@ -281,8 +327,7 @@ def _area_sigma(shape: RoomShape, views: int, scale_sigma: float, config: Config
     assert shape.sigmas is not None
     _, length = edge_directions(shape.polygon)
     sigmas = np.where(np.isnan(shape.sigmas), config.partition.unfitted_sigma_ch, shape.sigmas)
-    # Views from several places tell each other's factor by the odometry between them.
-    own = config.registration.scale_bias / np.sqrt(1 + _TOLD * max(0, views - 1))
+    own = _size_sigma(views, config)
     size = 2 * abs(signed_area(shape.polygon)) * np.hypot(scale_sigma, own)
     return float(np.sqrt(((length * sigmas) ** 2).sum() + size**2))
 

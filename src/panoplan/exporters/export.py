@@ -16,7 +16,12 @@ Files = Mapping[str, bytes]
 TEXEL_M = 0.0125
 """Size of a texel of the GLB."""
 
+_WIDEST_PX = 4096
+"""Width of the panoramas that it is textured from, at most."""
+
 _REPORT_TEXEL_M = 0.04
+_REPORT_PX = 1024
+"""Width of the panoramas that the model in the report is textured from: its texels are coarse."""
 
 
 @dataclass(frozen=True)
@@ -78,26 +83,30 @@ def _ifc(plan: FloorPlan, options: ExportOptions) -> Files:
 
 
 def _glb(plan: FloorPlan, options: ExportOptions) -> Files:
-    return {"plan.glb": _model(plan, options, TEXEL_M, options.progress)}
+    return {"plan.glb": _model(plan, options, TEXEL_M, _WIDEST_PX, options.progress)}
 
 
 def _html(plan: FloorPlan, options: ExportOptions) -> Files:
     from panoplan.exporters.report.page import report_html
 
-    model = _model(plan, options, _REPORT_TEXEL_M, lambda done, total: None)
+    model = _model(plan, options, _REPORT_TEXEL_M, _REPORT_PX, lambda done, total: None)
     page = report_html(plan, options.title, options.images, model, options.progress)
     return {"report.html": page}
 
 
 def _model(
-    plan: FloorPlan, options: ExportOptions, texel_m: float, progress: Callable[[int, int], None]
+    plan: FloorPlan,
+    options: ExportOptions,
+    texel_m: float,
+    widest: int,
+    progress: Callable[[int, int], None],
 ) -> bytes:
     from panoplan.exporters.model.glb import plan_glb
     from panoplan.exporters.model.surfaces import plan_surfaces
     from panoplan.exporters.model.texture import pictures, read_photos
 
     surfaces = plan_surfaces(plan)
-    photos = read_photos(plan, options.images)
+    photos = read_photos(plan, options.images, widest)
     made = pictures(surfaces, photos, texel_m, progress) if photos else {}
     return plan_glb(plan, surfaces, made)
 

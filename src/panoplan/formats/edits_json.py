@@ -11,8 +11,7 @@ import numpy as np
 from panoplan.editing.apply import Edited, apply
 from panoplan.formats.atomic import write_text
 from panoplan.formats.plan_json import read_plan
-from panoplan.formats.schema import check
-from panoplan.formats.sequence import read_json
+from panoplan.formats.schema import check, read_json
 from panoplan.types.arrays import frozen_array
 from panoplan.types.edits import (
     Edits,

@@ -13,7 +13,7 @@ from scipy.ndimage import maximum_filter1d
 
 from panoplan.errors import InputError
 from panoplan.formats.npy import read_npy
-from panoplan.formats.sequence import read_json
+from panoplan.formats.schema import read_json
 from panoplan.geometry.sphere import column_heading
 from panoplan.types.arrays import FloatArray, frozen_array
 from panoplan.types.layout import Layout

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
-from PIL import Image, ImageOps
+from PIL import ExifTags, Image, ImageOps
 
 from panoplan.errors import InputError
 from panoplan.formats.atomic import read_bytes, write_bytes
@@ -20,17 +20,26 @@ _FILE_LIMIT = 512 * 2**20
 _PIXEL_LIMIT = 16384 * 8192
 _ASPECT_TOLERANCE = 0.01
 _JPEG_QUALITY = 92
+_FORMATS = ("JPEG", "PNG", "WEBP", "TIFF", "BMP")
 _BROKEN = (OSError, ValueError, SyntaxError, Image.DecompressionBombError)
 
 Pixels = NDArray[np.uint8]
 
 
-def decode_panorama(data: bytes, source: object) -> Pixels:
+def decode_panorama(
+    data: bytes,
+    source: object,
+    *,
+    widest: int | None = None,
+    smallest: tuple[int, int] = SMALLEST,
+) -> Pixels:
     """Decodes an equirectangular panorama.
 
     Args:
-        data: bytes of an image file in a format that Pillow reads.
+        data: bytes of an image file: JPEG, PNG, WebP, TIFF or BMP.
         source: where they come from, for messages.
+        widest: px; what is wider is made smaller to it; None for as it is.
+        smallest: width and height that it has at least, px.
 
     Returns:
         (H, W, 3) RGB, turned as its EXIF orientation says.
@@ -39,45 +48,57 @@ def decode_panorama(data: bytes, source: object) -> Pixels:
         InputError: no readable image; more than 16384×8192 px; or as `check_panorama_size`.
     """
     try:
-        with warnings.catch_warnings(), Image.open(io.BytesIO(data)) as image:
+        with warnings.catch_warnings(), Image.open(io.BytesIO(data), formats=_FORMATS) as image:
             # The limit below is ours.
             warnings.simplefilter("ignore", Image.DecompressionBombWarning)
             if image.width * image.height > _PIXEL_LIMIT:
                 found = f"{image.width}×{image.height} px"
                 raise InputError(source, found, f"at most {_PIXEL_LIMIT} px in all")
-            upright = ImageOps.exif_transpose(image)
-            check_panorama_size(upright.width, upright.height, source)
-            return np.asarray(_eight_bits(upright).convert("RGB"))
+            turned = image.getexif().get(ExifTags.Base.Orientation, 1) != 1
+            upright = ImageOps.exif_transpose(image) if turned else image
+            check_panorama_size(upright.width, upright.height, source, smallest)
+            if widest is not None and not turned:
+                # A JPEG is then decoded no larger than it has to be.
+                image.draft(None, (widest, widest // 2))
+            pixels = np.asarray(_eight_bits(upright).convert("RGB"))
     except _BROKEN as error:
         raise InputError(source, f"no readable image ({str(error)[:80]})", "an image") from None
+    if widest is None or pixels.shape[1] <= widest:
+        return pixels
+    return resized(pixels, widest, widest // 2)
 
 
-def check_panorama_size(width: int, height: int, source: object) -> None:
+def check_panorama_size(
+    width: int, height: int, source: object, smallest: tuple[int, int] = SMALLEST
+) -> None:
     """Refuses what cannot be an equirectangular panorama.
 
     Args:
         width: px.
         height: px.
         source: for the message.
+        smallest: width and height that it has at least, px.
 
     Raises:
-        InputError: not twice as wide as high (± 1 %), or smaller than 512×256 px.
+        InputError: not twice as wide as high (± 1 %), or smaller than that.
     """
     if abs(width - 2 * height) > _ASPECT_TOLERANCE * width:
         raise InputError(
             source, f"{width}×{height} px", "an equirectangular panorama, twice as wide as high"
         )
-    if width < SMALLEST[0] or height < SMALLEST[1]:
-        raise InputError(source, f"{width}×{height} px", "at least 512×256 px")
+    if width < smallest[0] or height < smallest[1]:
+        raise InputError(source, f"{width}×{height} px", f"at least {smallest[0]}×{smallest[1]} px")
 
 
-def read_panorama(path: Path) -> Pixels:
-    """Reads an equirectangular panorama.
+def read_panorama(
+    path: Path, *, widest: int | None = None, smallest: tuple[int, int] = SMALLEST
+) -> Pixels:
+    """Reads an equirectangular panorama as `decode_panorama` does.
 
     Raises:
         InputError: missing, empty or larger than 512 MiB; or as `decode_panorama`.
     """
-    return decode_panorama(read_bytes(path, _FILE_LIMIT), path)
+    return decode_panorama(read_bytes(path, _FILE_LIMIT), path, widest=widest, smallest=smallest)
 
 
 def write_jpeg(path: Path, pixels: Pixels) -> None:

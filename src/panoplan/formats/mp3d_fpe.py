@@ -19,7 +19,8 @@ from scipy.spatial.transform import Rotation
 from panoplan.errors import InputError
 from panoplan.formats.atomic import make_folder, read_text, write_bytes, write_text
 from panoplan.formats.horizonnet import WIDTH, at_columns, read_boundaries_npy
-from panoplan.formats.sequence import level_of, read_json
+from panoplan.formats.schema import read_json
+from panoplan.formats.sequence import level_of
 from panoplan.formats.tum import read_rows
 from panoplan.geometry.polygons import counter_clockwise
 from panoplan.types.arrays import FloatArray, frozen_array

@@ -11,8 +11,7 @@ import numpy as np
 
 from panoplan.errors import InputError
 from panoplan.formats.atomic import write_text
-from panoplan.formats.schema import check, not_finite
-from panoplan.formats.sequence import read_json
+from panoplan.formats.schema import check, not_finite, read_json
 from panoplan.geometry.polygons import signed_area
 from panoplan.types.arrays import FloatArray, frozen_array
 from panoplan.types.plan import (
@@ -210,8 +209,14 @@ def _room_to_dict(room: Room) -> dict[str, Any]:
         "ceiling_height": _length(room.ceiling_height),
         "keyframes": list(room.keyframes),
         "walls": [
-            {"id": w.id, "a": _numbers(w.a), "b": _numbers(w.b), "sigma": _length(w.sigma)}
-            for w in room.walls
+            {
+                "id": wall.id,
+                "a": _numbers(wall.a),
+                "b": _numbers(wall.b),
+                "sigma": _length(wall.sigma),
+                "length_sigma": _length(wall.length_sigma),
+            }
+            for wall in room.walls
         ],
         "orientations": [_length(angle) for angle in room.orientations],
         "flags": list(room.flags),
@@ -226,7 +231,8 @@ def _room_from_dict(data: dict[str, Any]) -> Room:
         failure=data["failure"],
         keyframes=tuple(data["keyframes"]),
         walls=tuple(
-            Wall(w["id"], _array(w["a"]), _array(w["b"]), w["sigma"]) for w in data["walls"]
+            Wall(w["id"], _array(w["a"]), _array(w["b"]), w["sigma"], w.get("length_sigma"))
+            for w in data["walls"]
         ),
         holes=tuple(_array(hole) for hole in data["holes"]),
         area_sigma=data["area_sigma"],

@@ -1,4 +1,4 @@
-"""JSON checked against a schema of this package."""
+"""JSON read, and checked against a schema of this package."""
 
 from __future__ import annotations
 
@@ -11,8 +11,25 @@ from pathlib import Path
 from typing import Any
 
 from panoplan.errors import InputError
+from panoplan.formats.atomic import read_text
 
+_LIMIT = 64 * 2**20
 _LARGEST = sys.float_info.max
+
+
+def read_json(path: Path) -> Any:
+    """Reads a JSON file of at most 64 MiB.
+
+    Raises:
+        InputError: missing, empty, too large, or broken (with the line).
+    """
+    text = read_text(path, _LIMIT)
+    try:
+        return json.loads(text)
+    except json.JSONDecodeError as error:
+        raise InputError(f"{path}:{error.lineno}", f"broken JSON ({error.msg})", "JSON") from None
+    except (RecursionError, ValueError):
+        raise InputError(path, "JSON nested too deeply or a number too long", "JSON") from None
 
 
 def check(data: Any, path: Path, schema: str, version: int, kind: str) -> None:

@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 
 from panoplan.errors import InputError
-from panoplan.formats.atomic import make_folder, read_text, write_text
+from panoplan.formats.atomic import make_folder, write_text
 from panoplan.formats.layout_npz import write_layout_npz
+from panoplan.formats.schema import read_json
 from panoplan.formats.tum import write_tum
 from panoplan.geometry.polygons import counter_clockwise
 from panoplan.types.arrays import FloatArray, frozen_array
@@ -30,7 +31,6 @@ LAYOUTS = "layouts_pred"
 TRUE_TRAJECTORY = "trajectory_gt.tum"
 TRUE_PLAN = "floorplan_gt.json"
 TRUE_LAYOUTS = "layouts_gt"
-_LIMIT = 64 * 2**20
 _NAME_LIMIT = 200
 
 
@@ -64,21 +64,6 @@ class Sequence:
     layout_size: tuple[int, int] | None
     camera_height_m: float | None
     keyframes: tuple[SequenceEntry, ...]
-
-
-def read_json(path: Path) -> Any:
-    """Reads a JSON file of at most 64 MiB.
-
-    Raises:
-        InputError: missing, empty, too large, or broken (with the line).
-    """
-    text = read_text(path, _LIMIT)
-    try:
-        return json.loads(text)
-    except json.JSONDecodeError as error:
-        raise InputError(f"{path}:{error.lineno}", f"broken JSON ({error.msg})", "JSON") from None
-    except (RecursionError, ValueError):
-        raise InputError(path, "JSON nested too deeply or a number too long", "JSON") from None
 
 
 def read_sequence(folder: Path) -> Sequence:

@@ -6,7 +6,6 @@ import re
 from pathlib import Path
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 
 from panoplan.errors import InputError
 from panoplan.formats.atomic import read_text, write_text
@@ -87,6 +86,9 @@ def write_tum(path: Path, trajectory: Trajectory) -> None:
     for label in trajectory.labels:
         if not re.fullmatch(r"[^\s,#]+", label):
             raise InputError(path, f"the label {label!r}", "a word without space, comma or #")
+    # It takes longer to import than all that reading a plan needs.
+    from scipy.spatial.transform import Rotation
+
     quaternions = Rotation.from_matrix(trajectory.rotations).as_quat()
     lines = ["# label tx ty tz qx qy qz qw (camera-to-world; x right, y down, z forward)"]
     for label, t, q in zip(trajectory.labels, trajectory.translations, quaternions, strict=True):

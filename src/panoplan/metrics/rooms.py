@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 import shapely
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from panoplan.types.arrays import BoolArray, FloatArray
 
@@ -128,6 +127,9 @@ def matching(overlap: FloatArray, threshold: float) -> tuple[Match, ...]:
     Returns:
         The hits, by true room.
     """
+    # It takes longer to import than most exports, which need only `region`, to write.
+    from scipy.optimize import linear_sum_assignment
+
     if 0 in overlap.shape:
         return ()
     hit = overlap >= threshold

@@ -66,12 +66,15 @@ class Wall:
         a: (2,) start, plan frame.
         b: (2,) end, plan frame.
         sigma: standard deviation across the wall in plan units, None where not known.
+        length_sigma: standard deviation of its length in plan units, without what all lengths of
+            the plan err in common; None where not known.
     """
 
     id: str
     a: FloatArray
     b: FloatArray
     sigma: float | None = None
+    length_sigma: float | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -44,7 +44,9 @@ def test_it_holds_all_it_shows():
     rooms = [room for storey in data["storeys"] for room in storey["rooms"]]
     assert [room["area"] for room in rooms] == pytest.approx([12, 11.4, 10.44, 12])
     assert rooms[0]["area_sigma"] == 0.2
-    assert rooms[0]["walls"][0] == {"id": "wall_00", "length": 4.0, "sigma": 0.02}
+    assert rooms[0]["walls"][0] == {
+        "id": "wall_00", "length": 4.0, "length_sigma": 0.03, "sigma": 0.02,
+    }  # fmt: skip
     assert rooms[0]["keyframes"] == ["kf0"]
     assert data["missing"][0]["reason"] == "no closed path"
     assert data["skipped"][0] == {

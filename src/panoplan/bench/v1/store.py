@@ -22,7 +22,8 @@ from panoplan.datasets.folder import read_truth
 from panoplan.errors import InputError
 from panoplan.formats.atomic import make_folder, write_text
 from panoplan.formats.plan_json import read_plan, write_plan
-from panoplan.formats.sequence import read_json, write_sequence
+from panoplan.formats.schema import read_json
+from panoplan.formats.sequence import write_sequence
 from panoplan.types.truth import GroundTruth
 
 

@@ -82,14 +82,13 @@ def low_pass(colours: FloatArray, known: BoolArray) -> FloatArray:
     """(H, W, 3) smooth colours over the known ones, also a little beyond them."""
     height, width = known.shape
     rows, columns = (-(-size // _COARSE) for size in (height, width))
-    pad = ((0, rows * _COARSE - height), (0, columns * _COARSE - width))
-    weight = np.pad(known.astype(float), pad)
-    values = np.pad(np.where(known[..., None], colours, 0.0), (*pad, (0, 0)))
-    blocks = (rows, _COARSE, columns, _COARSE)
-    amount = ndimage.gaussian_filter(weight.reshape(blocks).mean(axis=(1, 3)), 1.0)
-    total = values.reshape(*blocks, 3).mean(axis=(1, 3))
-    total = ndimage.gaussian_filter(total, (1.0, 1.0, 0.0))
-    mean = total / np.maximum(amount, 1e-9)[..., None]
+    # Colours times how much is known, and that itself beside them.
+    values = np.zeros((rows * _COARSE, columns * _COARSE, 4))
+    values[:height, :width, :3] = np.where(known[..., None], colours, 0.0)
+    values[:height, :width, 3] = known
+    blocks = values.reshape(rows, _COARSE, columns, _COARSE, 4).mean(axis=(1, 3))
+    total = ndimage.gaussian_filter(blocks, (1.0, 1.0, 0.0))
+    mean = total[..., :3] / np.maximum(total[..., 3:], 1e-9)
     v = np.clip((np.arange(height) + 0.5) / _COARSE - 0.5, 0, rows - 1)
     u = np.clip((np.arange(width) + 0.5) / _COARSE - 0.5, 0, columns - 1)
     return _upsampled(mean, v, u)
@@ -100,6 +99,5 @@ def _upsampled(coarse: FloatArray, v: FloatArray, u: FloatArray) -> FloatArray:
     i, j = np.floor(v).astype(np.intp), np.floor(u).astype(np.intp)
     below, right = np.minimum(i + 1, len(coarse) - 1), np.minimum(j + 1, coarse.shape[1] - 1)
     b, a = (v - i)[:, None, None], (u - j)[None, :, None]
-    upper = coarse[i][:, j] * (1 - a) + coarse[i][:, right] * a
-    lower = coarse[below][:, j] * (1 - a) + coarse[below][:, right] * a
-    return np.asarray(upper * (1 - b) + lower * b)
+    between = coarse[i] * (1 - b) + coarse[below] * b
+    return np.asarray(between[:, j] * (1 - a) + between[:, right] * a)

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -50,7 +51,7 @@ class Surface:
     across: FloatArray
     along: FloatArray
 
-    @property
+    @cached_property
     def normal(self) -> FloatArray:
         """(3,) unit vector into the room."""
         return np.asarray(np.cross(self.across, self.along))

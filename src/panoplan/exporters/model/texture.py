@@ -14,14 +14,17 @@ from panoplan.exporters.model.blend import SurfaceView, blended, filled
 from panoplan.exporters.model.photos import Photo, free_space, reach_of
 from panoplan.exporters.model.surfaces import Surface, in_model
 from panoplan.exporters.storeys import metric_storeys
-from panoplan.formats.panoramas import read_panorama
+from panoplan.formats.image import read_panorama
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import FloorPlan
 
 EDGE = 2
 """Texels beyond the edges of a surface, so that no colour bleeds in."""
 
-_WIDEST_PX = 4096
+SMALLEST_PX = (32, 16)
+"""Of a panorama that is shown; one that a network looks at has to be larger."""
+
+_PHOTOS_BYTES = 1.5 * 2**30
 _VIEWS = 4
 _FARTHEST_M = 8.0
 _AFAR = 1e-3
@@ -48,12 +51,15 @@ class Picture:
     size: FloatArray
 
 
-def read_photos(plan: FloorPlan, files: Mapping[str, Path]) -> tuple[Photo, ...]:
+def read_photos(
+    plan: FloorPlan, files: Mapping[str, Path], widest: int = 4096
+) -> tuple[Photo, ...]:
     """The panoramas of cameras that stand in a room or on the way between two.
 
     Args:
         plan: metric, its camera height known.
         files: image by keyframe.
+        widest: px, of each; less where all together would be more than 1.5 GiB.
 
     Raises:
         InputError: not metric, or an image that cannot be used.
@@ -61,6 +67,8 @@ def read_photos(plan: FloorPlan, files: Mapping[str, Path]) -> tuple[Photo, ...]
     floors = metric_storeys(plan)
     rises = elevations(floors)
     height = plan.camera_height_m or 0.0
+    # Three bytes a pixel, half as many rows as columns.
+    widest = min(widest, int(np.sqrt(_PHOTOS_BYTES / 1.5 / max(len(files), 1))))
     found = []
     for floor in floors:
         free = free_space(floor)
@@ -68,7 +76,7 @@ def read_photos(plan: FloorPlan, files: Mapping[str, Path]) -> tuple[Photo, ...]
             reach = reach_of(camera, free) if camera.id in files else None
             if reach is not None:
                 place = in_model(camera.position[None], rises[floor.level] + height)[0]
-                pixels = read_panorama(files[camera.id], _WIDEST_PX)
+                pixels = read_panorama(files[camera.id], widest=widest, smallest=SMALLEST_PX)
                 found.append(Photo(camera.id, camera.room, place, camera.heading, pixels, reach))
     return tuple(found)
 

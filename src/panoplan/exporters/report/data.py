@@ -111,7 +111,12 @@ def _room(room: Room, colour: str) -> dict[str, Any]:
         "keyframes": [_name(keyframe) for keyframe in room.keyframes],
         "flags": [_name(flag) for flag in room.flags],
         "walls": [
-            {"id": wall.id, "length": round(wall_length(wall), 4), "sigma": wall.sigma}
+            {
+                "id": wall.id,
+                "length": round(wall_length(wall), 4),
+                "length_sigma": wall.length_sigma,
+                "sigma": wall.sigma,
+            }
             for wall in room.walls
         ],
     }

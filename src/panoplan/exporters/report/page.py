@@ -8,6 +8,7 @@ import html
 import io
 import json
 from collections.abc import Callable, Mapping
+from concurrent.futures import ThreadPoolExecutor
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -15,13 +16,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from panoplan.exporters.model.texture import SMALLEST_PX
 from panoplan.exporters.report.data import report_data
-from panoplan.formats.panoramas import read_panorama
+from panoplan.formats.image import read_panorama
 from panoplan.types.plan import FloorPlan
 
 _PANORAMAS_BYTES = 14 * 2**20
 _PANORAMA_BYTES = 300 * 2**10
 _MODEL_BYTES = 3 * 2**20
+_THREADS = 4
 _SIZES = ((2048, 80), (1536, 78), (1024, 78), (1024, 60), (768, 55), (512, 50), (512, 30))
 
 
@@ -56,9 +59,12 @@ def report_html(
     shown = [pose.id for pose in plan.trajectory if pose.id in images]
     limit = min(_PANORAMA_BYTES, _PANORAMAS_BYTES // max(len(shown), 1))
     data["panoramas"] = {}
-    for number, name in enumerate(shown):
-        data["panoramas"][name] = _base64(_small_jpeg(images[name], limit))
-        progress(number + 1, len(shown))
+    # Most of the work is in Pillow, which lets threads run beside one another.
+    with ThreadPoolExecutor(_THREADS) as pool:
+        made = pool.map(lambda name: _small_jpeg(images[name], limit), shown)
+        for number, (name, picture) in enumerate(zip(shown, made, strict=True)):
+            data["panoramas"][name] = _base64(picture)
+            progress(number + 1, len(shown))
     return _page(data, script, style).encode("utf-8")
 
 
@@ -90,13 +96,12 @@ def _base64(data: bytes) -> str:
 
 def _small_jpeg(path: Path, limit: int) -> bytes:
     """A panorama as JPEG of at most so many bytes, as large and good as that allows."""
-    image = read_panorama(path, _SIZES[0][0])
+    image = read_panorama(path, widest=_SIZES[0][0], smallest=SMALLEST_PX)
     made = b""
     for width, quality in _SIZES:
-        if width <= image.shape[1] or not made:
-            made = _jpeg(image, width, quality)
-            if len(made) <= limit:
-                break
+        made = _jpeg(image, width, quality)
+        if len(made) <= limit:
+            break
     return made
 
 
@@ -107,5 +112,5 @@ def _jpeg(image: NDArray[np.uint8], width: int, quality: int) -> bytes:
     wide = min(width, picture.width)
     picture = picture.resize((wide, wide // 2), resample=Image.Resampling.BOX)
     stream = io.BytesIO()
-    picture.save(stream, format="JPEG", quality=quality, optimize=True)
+    picture.save(stream, format="JPEG", quality=quality)
     return stream.getvalue()
