@@ -1,4 +1,5 @@
 import sys
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -55,3 +56,17 @@ def test_a_plan_without_rooms_is_shown(tmp_path):
     view.show_plan(plan())
     view.close()
     assert (tmp_path / "run.rrd").stat().st_size > 1000
+
+
+def test_cameras_without_a_place_make_no_density(tmp_path):
+    pytest.importorskip("rerun", reason="the extra 'live' is not installed")
+    (keyframe,) = walk(RECTANGLE, np.array([[0.4, -0.3]]))
+    for name, known in (("waiting", None), ("placed", 1.0)):
+        view = LiveView(tmp_path / name, {})
+        made = plan()
+        pose = replace(made.trajectory[0], id=keyframe.id)
+        made = replace(made, trajectory=(pose,), scale=replace(made.scale, ch_per_su=known))
+        view.update(0, keyframe, (), lambda made=made: made)
+        view.close()
+    shown = [b"/density" in (tmp_path / name).read_bytes() for name in ("waiting", "placed")]
+    assert shown == [False, True]

@@ -141,6 +141,9 @@ class LiveView:
 
     def _show_density(self, plan: FloorPlan) -> None:
         """How many boundary points lie in each cell, in shades of their logarithm."""
+        if plan.scale.ch_per_su is None:
+            # No camera has a place yet.
+            return
         height = plan.camera_height_m or 1.0
         points = [
             _boundary_points(pose, self._layouts[pose.id], height)
