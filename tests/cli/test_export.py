@@ -2,6 +2,7 @@ import json
 
 import pytest
 from tests.exporters.model.painted import painted_plan, write_panoramas
+from tests.exporters.storeys import ODD_NAMES
 from tests.metrics.plans import plan
 
 from panoplan.cli.main import main
@@ -48,6 +49,54 @@ def test_images_texture_the_model(tmp_path, capsys):
     assert main([*words, "-o", str(tmp_path / "two"), "--images", str(tmp_path)]) == 2
     assert "no image of any keyframe" in capsys.readouterr().err
     assert not (tmp_path / "two").exists()
+
+
+ODD_KINDS = ("svg", "pdf", "dxf", "geojson", "ifc", "glb", "csv", "html")
+
+
+@pytest.mark.parametrize("name", [name for name in ODD_NAMES if name != "x" * 10_000])
+def test_odd_names_are_harmless_in_every_format(tmp_path, name):
+    write_plan(tmp_path / "plan.json", plan(names=[name, "x" * 10_000, "\u202e\x07\n"]))
+    words = ["export", str(tmp_path / "plan.json"), "--to", ",".join(ODD_KINDS), "--quiet"]
+    assert main([*words, "-o", str(tmp_path / "out"), "--title", name]) == 0
+    for path in (tmp_path / "out").iterdir():
+        data = path.read_bytes()
+        if path.name != "plan.glb":
+            assert b"\x07" not in data or path.suffix == ".pdf"
+        # Scripts are the report's own, data in others.
+        if path.suffix == ".svg":
+            assert b"<script" not in data
+        if path.suffix == ".html":
+            assert data.count(b"<script") == 2
+
+
+@pytest.mark.parametrize(
+    ("content", "told"),
+    [
+        (b"", "empty"),
+        (b"\x00\xff\xfe", "UTF-8"),
+        (b"[1, 2]", "object"),
+        (b'{"schema": 1', "broken JSON"),
+        (b"[" * 100_000, "nested too deeply"),
+        (None, "folder"),
+    ],
+)
+def test_files_that_are_no_plan_are_one_line(tmp_path, capsys, content, told):
+    path = tmp_path / "plan.json"
+    path.mkdir() if content is None else path.write_bytes(content)
+    assert main(["export", str(path), "--to", "csv", "-o", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert told in error
+    assert error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_where_one_file_cannot_be_written_none_is(folder, capsys):
+    (folder / "out" / "plan.geojson").mkdir(parents=True)
+    words = ["export", str(folder / "plan.json"), "--to", "csv,geojson,svg"]
+    assert main([*words, "-o", str(folder / "out")]) == 2
+    assert "plan.geojson: found Is a directory" in capsys.readouterr().err
+    assert [path.name for path in (folder / "out").iterdir()] == ["plan.geojson"]
 
 
 def newer(data):

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from panoplan.errors import InputError
 from panoplan.exporters.geojson import Anchor
-from panoplan.formats.atomic import make_folder, write_bytes
+from panoplan.formats.atomic import make_folder, write_together
 from panoplan.types.plan import FloorPlan
 
 Files = Mapping[str, bytes]
@@ -155,6 +155,5 @@ def export(
     for kind in kinds:
         files.update(KINDS[kind](plan, options))
     make_folder(folder)
-    for name, data in files.items():
-        write_bytes(folder / name, data)
+    write_together({folder / name: data for name, data in files.items()})
     return [folder / name for name in files]

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import stat
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 
 from panoplan.errors import InputError
@@ -21,25 +23,42 @@ def write_bytes(path: Path, data: bytes) -> None:
     Raises:
         InputError: the place cannot be written.
     """
+    write_together({path: data})
+
+
+def write_together(files: Mapping[Path, bytes]) -> None:
+    """Writes files beside their places, and moves them there when all are written.
+
+    Args:
+        files: content by path; the folders exist.
+
+    Raises:
+        InputError: a place cannot be written; then none of the files is there.
+    """
+    beside: dict[Path, str] = {}
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        try:
+        for path, data in files.items():
+            handle, beside[path] = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
             with os.fdopen(handle, "wb") as stream:
                 stream.write(data)
                 stream.flush()
                 os.fsync(stream.fileno())
             mask = os.umask(0)
             os.umask(mask)
-            os.chmod(name, 0o666 & ~mask)
-            os.replace(name, path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                os.unlink(name)
-            raise
+            os.chmod(beside[path], 0o666 & ~mask)
+            if path.is_dir():
+                raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR))
+        for path in files:
+            os.replace(beside[path], path)
+            del beside[path]
     except OSError as error:
         raise InputError(
             path, f"{error.strerror or error}", "a place that can be written"
         ) from None
+    finally:
+        for name in beside.values():
+            with contextlib.suppress(OSError):
+                os.unlink(name)
 
 
 def write_text(path: Path, text: str) -> None:
