@@ -4,7 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from shapely import Polygon, box
+from shapely import Polygon, box, unary_union
 from tests.scenes import L_SHAPE, RECTANGLE, walk
 
 from panoplan.config import Config
@@ -170,3 +170,20 @@ def test_an_outline_that_turns_back_on_itself_loses_the_spike():
     assert sigmas[[0, 1, 2, 4, 5]].tolist() == [0, 1, 2, 5, 6]
     # A right angle is none.
     assert len(outline_module._without_spikes(ring[:4], np.zeros(4))[0]) == 4
+
+
+def test_several_open_doors_side_by_side_are_no_wide_passage():
+    """Views of a corridor and of a hall along it, each through the nearest of three doors."""
+    rooms = box(0.0, 0.0, 9.0, 1.1).union(box(0.0, 1.2, 9.0, 5.0))
+
+    def through(x, y):
+        door = min((1.0, 4.2, 7.4), key=lambda at: abs(at + 0.25 - x))
+        seen = unary_union([rooms, box(door, 1.0, door + 0.5, 1.3)])
+        return np.array(seen.exterior.coords)[:-1], [[x, y]]
+
+    corridor = [through(x, 0.5) for x in np.linspace(0.5, 8.5, 9)]
+    hall = [through(x, y) for x in np.linspace(0.8, 8.2, 7) for y in (2.0, 4.0)]
+    found = plan_rooms(_views(*corridor, *hall), CONFIG)
+    assert [len(room.members) for room in found] == [9, 14]
+    areas = [Polygon(room.shape.polygon).area for room in found]
+    assert areas == pytest.approx([9 * 1.1, 9 * 3.8], rel=0.08)

@@ -9,7 +9,9 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import ndimage
 from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
 from scipy.spatial.distance import squareform
 
 from panoplan.config import FusionConfig, GroupingConfig
@@ -137,21 +139,35 @@ def _joined(
         through, ending = passing_votes(
             seeing.cameras, seeing.profiles, points, config.pass_tolerance_ch
         )
-        passing = through > config.pass_share * (through + ending)
-        if passing.sum() < 2:
-            continue
-        length = float(np.hypot(*np.ptp(points[passing], axis=0)))
+        passing = points[through > config.pass_share * (through + ending)]
+        passage = _widest(passing, fusion.cell_ch)
+        length = float(np.hypot(*np.ptp(passage, axis=0))) if len(passage) > 1 else 0.0
         if length < config.neck_min_ch:
             continue
-        middle = points[passing].mean(axis=0)
+        middle = passage.mean(axis=0)
         width = min(_width(territories, k, middle, length, fusion.cell_ch) for k in (one, other))
-        if length > config.neck_ratio * width:
+        # Where either is a sliver, there is no floor to be walked from one to the other.
+        if config.neck_min_ch < width < length / config.neck_ratio:
             joined[one, other] = True
     count, part = connected_components(joined, directed=False)
     return [
         tuple(sorted(view for k in np.flatnonzero(part == n).tolist() for view in groups[k]))
         for n in range(count)
     ]
+
+
+def _widest(points: FloatArray, cell: float) -> FloatArray:
+    """The longest chain of a border's points: several doors side by side are no wide one."""
+    if len(points) < 2:
+        return points
+    pairs = KDTree(points).query_pairs(_CHAIN_CELLS * cell, output_type="ndarray")
+    touching = coo_array((np.ones(len(pairs)), tuple(pairs.T)), shape=(len(points),) * 2)
+    count, part = connected_components(touching, directed=False)
+    chains = (points[part == k] for k in range(count))
+    return max(chains, key=lambda chain: float(np.hypot(*np.ptp(chain, axis=0))))
+
+
+_CHAIN_CELLS = 3.0
 
 
 def _borders(territories: Territories, cell: float) -> dict[tuple[int, int], FloatArray]:
