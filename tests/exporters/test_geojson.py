@@ -58,6 +58,8 @@ def test_doors_walls_and_cameras():
     assert door["properties"]["rooms"] == ["room_01", "room_02"]
     assert len(features(made, category="window")) == len(features(made, category="opening")) == 1
     walls = features(made, feature_type="wall")
+    assert walls[0]["properties"]["sigma_m"] == 0.02
+    assert walls[0]["properties"]["length_sigma_m"] == 0.03
     assert [shape(wall).length for wall in walls[:4]] == pytest.approx([4, 3, 4, 3])
     assert len(features(made, feature_type="camera")) == len(made.trajectory)
 

@@ -116,7 +116,8 @@ def _features(
         yield feature("unit", area, room.id, **_room_properties(room, area))
         for wall in room.walls:
             line = shapely.LineString([wall.a, wall.b])
-            yield feature("wall", line, wall.id, room=room.id, sigma_m=wall.sigma)
+            own = {"sigma_m": wall.sigma, "length_sigma_m": wall.length_sigma}
+            yield feature("wall", line, wall.id, room=room.id, **own)
     kinds: tuple[tuple[str, tuple[Aperture, ...]], ...] = (
         ("door", floor.doors),
         ("opening", floor.openings),
