@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import NamedTuple
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 FloatArray = NDArray[np.float64]
@@ -16,9 +17,9 @@ class Hits(NamedTuple):
 
     Attributes:
         edge: (N,) index of the edge, by the point that it begins at.
-        at: (N,) distance along the edge.
+        at: (N,) distance along the edge, NaN where the ray meets none.
         range: (N,) distance along the ray; infinite where it meets none.
-        sine: (N,) of the angle between ray and edge, 0-1.
+        sine: (N,) of the angle between ray and edge, 0-1; NaN where it meets none.
     """
 
     edge: IntArray
@@ -36,16 +37,29 @@ def first_hits(origin: FloatArray, rays: FloatArray, ring: FloatArray) -> Hits:
         ring: (M, 2) open ring, M ≥ 3.
     """
     along, length = edge_directions(ring)
-    start = ring - origin
-    with np.errstate(divide="ignore", invalid="ignore"):
-        across = rays[:, :1] * along[:, 1] - rays[:, 1:] * along[:, 0]
-        distance = (start[:, 0] * along[:, 1] - start[:, 1] * along[:, 0]) / across
-        at = (start[:, 0] * rays[:, 1:] - start[:, 1] * rays[:, :1]) / across
-    meets = (distance > 0) & (at >= -_SLACK) & (at <= length + _SLACK)
-    distance = np.where(meets, distance, np.inf)
-    edge = np.argmin(distance, axis=1)
-    row = np.arange(len(rays))
-    return Hits(edge, at[row, edge], distance[row, edge], np.abs(across[row, edge]))
+    return Hits(*_first_hits(ring - origin, along, length, np.ascontiguousarray(rays)))
+
+
+@njit(cache=True)
+def _first_hits(start, along, length, rays):
+    count = len(rays)
+    edges, ats = np.zeros(count, np.int64), np.empty(count)
+    ranges, sines = np.full(count, np.inf), np.empty(count)
+    for n in range(count):
+        x, y = rays[n]
+        for k in range(len(start)):
+            across = x * along[k, 1] - y * along[k, 0]
+            if across == 0.0:
+                continue
+            at = (start[k, 0] * y - start[k, 1] * x) / across
+            if at < -_SLACK or at > length[k] + _SLACK:
+                continue
+            distance = (start[k, 0] * along[k, 1] - start[k, 1] * along[k, 0]) / across
+            if 0.0 < distance < ranges[n]:
+                edges[n], ats[n], ranges[n], sines[n] = k, at, distance, abs(across)
+        if ranges[n] == np.inf:
+            ats[n] = sines[n] = np.nan
+    return edges, ats, ranges, sines
 
 
 _SLACK = 1e-9

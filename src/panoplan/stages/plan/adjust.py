@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -13,8 +13,8 @@ from scipy.sparse.linalg import splu
 
 from panoplan.config import AdjustConfig
 from panoplan.geometry.angles import line_difference
-from panoplan.geometry.hits import edge_directions, first_hits
-from panoplan.geometry.rigid import turn
+from panoplan.geometry.hits import edge_directions
+from panoplan.stages.plan.pieces import Pieces, pieces_on_walls
 from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.view import Correction, RegisteredLayout
 
@@ -62,23 +62,6 @@ class Adjusted:
     corrections: tuple[Correction, ...]
     stretch: float
     covariances: dict[int, FloatArray]
-
-
-@dataclass(frozen=True, eq=False)
-class _Pieces:
-    """Straight pieces of views' boundaries that lie on walls, two points each.
-
-    Attributes:
-        view: (P,) index of the view.
-        wall: (P,) index of the wall.
-        points: (P, 2, 2) relative to the camera; their errors across the wall are independent.
-        sigma: (P,) standard deviation of each across the wall.
-    """
-
-    view: IntArray
-    wall: IntArray
-    points: FloatArray
-    sigma: FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -142,8 +125,8 @@ def adjust(
 
     Source: docs/deviations.md, "Past the paper".
     """
-    pieces, walls = _pieces(views, rooms, start, reach_ch, config)
-    walls = replace(walls, gap=faces.gap_ch or 0.0)
+    pieces = pieces_on_walls(views, rooms, start, reach_ch, config)
+    walls = _walls_of([ring for _, ring in rooms], faces.gap_ch or 0.0)
     count = len(views)
     if len(pieces.view) == 0 or count < 2:
         return Adjusted(tuple(start), stretch.factor, {})
@@ -186,95 +169,14 @@ _FALLING = 2
 """The evidence has one peak: after so many falls it is behind."""
 
 
-def _pieces(
-    views: Sequence[RegisteredLayout],
-    rooms: Sequence[tuple[Sequence[int], FloatArray]],
-    start: Sequence[Correction],
-    reach_ch: float,
-    config: AdjustConfig,
-) -> tuple[_Pieces, _Walls]:
-    """Pieces of all views, in their own frames, and the lines of all walls."""
-    view_of: list[int] = []
-    wall_of: list[int] = []
-    points: list[FloatArray] = []
-    sigmas: list[float] = []
-    middles: list[FloatArray] = []
-    angles: list[float] = []
-    for members, ring in rooms:
-        first = len(middles)
-        along, _ = edge_directions(ring)
-        middles += list((ring + np.roll(ring, -1, axis=0)) / 2)
-        angles += np.arctan2(-along[:, 0], along[:, 1]).tolist()
-        for index in members:
-            moved = start[index].apply(views[index])
-            back = turn(-start[index].turn) / start[index].factor
-            for wall, ends, sigma in _view_pieces(moved, ring, along, reach_ch, config):
-                view_of.append(index)
-                wall_of.append(first + wall)
-                points.append(ends @ back)
-                sigmas.append(sigma)
-    return (
-        _Pieces(
-            np.array(view_of, dtype=np.int64),
-            np.array(wall_of, dtype=np.int64),
-            np.array(points).reshape(-1, 2, 2),
-            np.array(sigmas),
-        ),
-        _Walls(np.array(middles).reshape(-1, 2), np.array(angles), np.zeros(len(angles)), 0.0),
-    )
-
-
-def _view_pieces(
-    view: RegisteredLayout,
-    ring: FloatArray,
-    along: FloatArray,
-    reach_ch: float,
-    config: AdjustConfig,
-) -> Iterable[tuple[int, FloatArray, float]]:
-    """What of one view lies on which wall of its room."""
-    offsets = view.boundary - view.camera
-    known = np.flatnonzero(np.isfinite(offsets[:, 0]))[:: config.stride]
-    if len(known) == 0:
-        return
-    offsets, sigmas = offsets[known], view.sigmas[known]
-    ranges = np.hypot(*offsets.T)
-    hits = first_hits(view.camera, offsets / ranges[:, None], ring)
-    near = np.abs(ranges - hits.range) * hits.sine < reach_ch
-    near &= hits.sine > np.sin(np.deg2rad(config.grazing_deg))
-    # What all columns of a panorama have in common is its factor, not their noise.
-    own = np.maximum(sigmas**2 - (config.common_share * ranges) ** 2, (_OWN * sigmas) ** 2)
-    for wall in np.unique(hits.edge[near]).tolist():
-        chosen = np.flatnonzero(near & (hits.edge == wall))
-        if len(chosen) * config.stride < config.min_columns:
-            continue
-        across = np.sqrt(own[chosen]) * hits.sine[chosen]
-        ends, sigma = _piece(offsets[chosen], along[wall], across, config)
-        yield wall, ends, sigma
-
-
-_OWN = 0.3
-"""At least this share of a column's sigma is its own."""
-
-
-def _piece(
-    points: FloatArray, along: FloatArray, sigma: FloatArray, config: AdjustConfig
-) -> tuple[FloatArray, float]:
-    """The line through a view's columns on a wall: two points of it with independent errors."""
-    outward = np.array([along[1], -along[0]])
-    at, off = points @ along, points @ outward
-    weight = 1.0 / sigma**2
-    turn, mean_at, mean_off, spread = 0.0, 0.0, 0.0, 0.0
-    for _ in range(3):
-        total = weight.sum()
-        mean_at, mean_off = (weight @ at) / total, (weight @ off) / total
-        spread = np.sqrt((weight @ (at - mean_at) ** 2) / total)
-        turn = (weight @ ((at - mean_at) * (off - mean_off))) / max(total * spread**2, 1e-12)
-        left = off - mean_off - turn * (at - mean_at)
-        weight = 1.0 / (sigma**2 * (1.0 + (left / (2.0 * sigma)) ** 2))
-    reach = np.array([-spread, spread])
-    ends = np.outer(mean_at + reach, along) + np.outer(mean_off + turn * reach, outward)
-    independent = max(1.0, len(points) * config.stride / config.correlation_columns)
-    return ends, float(np.sqrt(2.0 * np.mean(sigma**2) / independent))
+def _walls_of(rings: Sequence[FloatArray], gap: float) -> _Walls:
+    """The lines of all walls as they are."""
+    if not rings:
+        return _Walls(np.empty((0, 2)), np.empty(0), np.empty(0), gap)
+    middles = np.concatenate([(ring + np.roll(ring, -1, axis=0)) / 2 for ring in rings])
+    along = np.concatenate([edge_directions(ring)[0] for ring in rings])
+    angles = np.arctan2(-along[:, 0], along[:, 1])
+    return _Walls(middles, angles, np.zeros(len(angles)), gap)
 
 
 def _moved(state: FloatArray, walls: _Walls, step: FloatArray) -> tuple[FloatArray, _Walls]:
@@ -292,7 +194,7 @@ def _system(
     state: FloatArray,
     walls: _Walls,
     walk: _Walk,
-    pieces: _Pieces,
+    pieces: Pieces,
     faces: Faces,
     multiple: float,
     config: AdjustConfig,
@@ -380,7 +282,7 @@ def _add_walls(
     state: FloatArray,
     walls: _Walls,
     cameras: FloatArray,
-    pieces: _Pieces,
+    pieces: Pieces,
     config: AdjustConfig,
 ) -> None:
     view, wall = pieces.view, pieces.wall
