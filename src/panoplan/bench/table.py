@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 from typing import Any
 
-from panoplan.bench import difficulty_tables, export_tables
+from panoplan.bench import difficulty_tables, export_tables, pose_tables
 from panoplan.bench.markdown import number, pair, table
 from panoplan.bench.record import of_benchmark
 from panoplan.bench.v1 import tables as v1
@@ -28,7 +28,8 @@ def update(page: Path, folder: Path) -> bool:
         page: Markdown with `<!-- measured: NAMES -->` and `<!-- end of measured -->`; the names,
             with commas, are of the tables that come between: buildings,
             methods, shapes, scale, sweeps, causes, difficulty, errors, flats, metric,
-            home, misplaced, layouts, exports, areas, model, runtime.
+            home, misplaced, layouts, exports, areas, model, runtime,
+            walks, tours.
         folder: of the benchmark files.
 
     Returns:
@@ -84,6 +85,8 @@ def updated(text: str, folder: Path, page: Path) -> str:
         "areas": export_tables.areas,
         "model": export_tables.model,
         "runtime": _runtime,
+        "walks": pose_tables.walks,
+        "tours": pose_tables.tours,
     }
 
     def filled(marks: re.Match[str]) -> str:

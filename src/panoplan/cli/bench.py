@@ -48,6 +48,13 @@ def add_parser(commands: Any) -> None:
     )
     parser.add_argument("--flats", type=int, default=20, metavar="N", help="seeds 0 to N-1 a grade")
     parser.add_argument("--trials", type=int, default=40, metavar="N", help="misplaced: how many")
+    parser.add_argument(
+        "--draws",
+        type=int,
+        default=0,
+        metavar="N",
+        help="tour: so often three quarters of the photos are drawn and joined, too",
+    )
     parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
     parser.add_argument(
         "--jobs",
@@ -126,9 +133,9 @@ def act(options: argparse.Namespace) -> int:
         elif options.what == "model":
             figures = model.measure(options.input, config, report, options.pictures)
         elif options.what == "tour":
-            figures = tour.measure(options.input, config, report)
+            figures = tour.measure(_scenes(options.input), config, options.draws, report)
         elif options.what == "odometry":
-            figures = odometry.measure(_walks(options.input), report)
+            figures = odometry.measure(_scenes(options.input), report)
         elif options.what == "difficulty":
             figures = difficulty.measure(options.input, config, report, jobs=options.jobs)
         else:
@@ -142,13 +149,18 @@ def act(options: argparse.Namespace) -> int:
     return 0
 
 
-def _walks(path: Path) -> list[Path]:
-    """The walk, or the walks in a folder."""
+def _scenes(path: Path) -> list[Path]:
+    """The scene with true poses, or the scenes in a folder."""
+    from panoplan.formats.sequence import TRUE_TRAJECTORY
+
     if not path.is_dir():
-        raise InputError(path, "no folder", "a rendered walk, or a folder of them")
-    if (path / "trajectory_gt.tum").exists():
+        raise InputError(path, "no folder", "a scene with known truth, or a folder of them")
+    if (path / TRUE_TRAJECTORY).exists():
         return [path]
-    return sorted(p for p in path.iterdir() if (p / "trajectory_gt.tum").exists())
+    scenes = sorted(p for p in path.iterdir() if (p / TRUE_TRAJECTORY).exists())
+    if not scenes:
+        raise InputError(path, f"no {TRUE_TRAJECTORY} in it or below", "scenes with known truth")
+    return scenes
 
 
 def _jobs(text: str) -> int:

@@ -8,7 +8,19 @@ import traceback
 from collections.abc import Sequence
 
 from panoplan import __version__
-from panoplan.cli import bench, cache, compare, edit, evaluate, export, layout, model, run, simulate
+from panoplan.cli import (
+    bench,
+    cache,
+    compare,
+    demo,
+    edit,
+    evaluate,
+    export,
+    layout,
+    model,
+    run,
+    simulate,
+)
 from panoplan.errors import PanoplanError
 
 EXIT_BUG = 1
@@ -26,7 +38,19 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"panoplan {__version__}")
     commands = top.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for module in (run, layout, edit, export, evaluate, compare, simulate, bench, model, cache):
+    for module in (
+        demo,
+        run,
+        layout,
+        edit,
+        export,
+        evaluate,
+        compare,
+        simulate,
+        bench,
+        model,
+        cache,
+    ):
         module.add_parser(commands)
     return top
 

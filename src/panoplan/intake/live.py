@@ -14,7 +14,14 @@ from panoplan.types.layout import Layout
 from panoplan.types.plan import FloorPlan
 
 LayoutOf = Callable[[Seen], Layout | None]
+Follower = Callable[[PlacedKeyframe], None]
+"""Is told each keyframe of a walk that got its pose."""
 _SHOW_EVERY_S = 2.0
+
+
+def not_followed(layout_of: LayoutOf) -> Follower:
+    """Follows no walk: for who waits for its end."""
+    return lambda placed: None
 
 
 class LivePlan:

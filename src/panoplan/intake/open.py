@@ -11,7 +11,7 @@ from panoplan.datasets.detect import image_files, open_scene
 from panoplan.datasets.scene import Scene
 from panoplan.intake.given import Given, recognise
 from panoplan.intake.layouts import open_images_with_poses
-from panoplan.intake.live import LayoutOf, LivePlan
+from panoplan.intake.live import Follower, LayoutOf
 from panoplan.intake.panoramas import Panoramas
 from panoplan.intake.scene_folder import Report
 from panoplan.intake.tour import is_tour, open_tour
@@ -24,7 +24,7 @@ def open_input(
     work: Path,
     cache: Cache,
     progress: Progress,
-    live: Callable[[LayoutOf], LivePlan],
+    live: Callable[[LayoutOf], Follower],
     config: Config,
 ) -> tuple[Scene, Report]:
     """Opens whatever was given and makes what is missing.
@@ -34,7 +34,7 @@ def open_input(
         work: folder for what is made: a sequence folder of its own.
         cache: of what was computed before.
         progress: is told how far the work has come.
-        live: makes the plan that grows while a walk is followed.
+        live: makes what follows the walk while it goes on, such as `LivePlan`.
         config: settings.
 
     Returns:

@@ -20,7 +20,7 @@ from panoplan.formats.image import write_jpeg
 from panoplan.geometry.panorama import turned
 from panoplan.intake.given import Given
 from panoplan.intake.layouts import layout_of, open_network, predict, with_reasons
-from panoplan.intake.live import LayoutOf, LivePlan
+from panoplan.intake.live import Follower, LayoutOf
 from panoplan.intake.panoramas import Panoramas
 from panoplan.intake.scene_folder import IMAGES, Report, plain, trajectory_of, write_scene
 from panoplan.layouts.files import list_layouts, read_layout
@@ -49,7 +49,7 @@ def open_walk(
     work: Path,
     cache: Cache,
     progress: Progress,
-    live: Callable[[LayoutOf], LivePlan],
+    live: Callable[[LayoutOf], Follower],
 ) -> tuple[Scene, Report]:
     """The scene of a walk of which there are only images.
 
@@ -59,7 +59,7 @@ def open_walk(
         work: becomes a sequence folder of level keyframes.
         cache: of what was computed before.
         progress: is told how far the work has come.
-        live: makes the plan that grows while the walk is followed.
+        live: makes what follows the walk while it goes on, such as `LivePlan`.
 
     Returns:
         The scene of the walk's largest map, and what else there is to tell.

@@ -1,5 +1,7 @@
 """Photographs of a simulated walk."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -8,6 +10,9 @@ from panoplan.cli.main import main
 from panoplan.formats.layout_npz import read_layout_npz
 from panoplan.formats.sequence import read_sequence
 from panoplan.formats.tum import read_tum
+from panoplan.simulate.render.record import record
+from panoplan.simulate.render.scene import PREVIEW
+from panoplan.simulate.scene import simulate_flat
 
 ARGUMENTS = ["simulate", "--seed", "4", "--rooms", "5", "--stills", "--quiet"]
 
@@ -63,3 +68,17 @@ def test_wrong_wishes_are_told(tmp_path, capsys, wrong, told):
     assert main([*ARGUMENTS, "-o", str(tmp_path / "x"), *wrong]) == 2
     assert told in capsys.readouterr().err
     assert not (tmp_path / "x").exists()
+
+
+def test_two_processes_take_the_same_pictures(tmp_path):
+    home = simulate_flat(4, "exact", rooms=5, stills=True)
+    few = replace(home, keyframes=home.keyframes[:3])
+    one, two = tmp_path / "one", tmp_path / "two"
+    heard = []
+    record(one, few, 4, PREVIEW, width=64)
+    images = record(two, few, 4, PREVIEW, width=64, jobs=2, told=lambda *done: heard.append(done))
+    assert list(images) == [keyframe.id for keyframe in few.keyframes]
+    assert heard[-1] == (3, 3)
+    paths = sorted(path.relative_to(one) for path in one.rglob("*") if path.is_file())
+    assert paths == sorted(path.relative_to(two) for path in two.rglob("*") if path.is_file())
+    assert all((one / path).read_bytes() == (two / path).read_bytes() for path in paths)

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import multiprocessing
+from collections.abc import Callable, Sequence
+from concurrent.futures import ProcessPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 
@@ -30,6 +32,7 @@ def record(
     quality: Quality,
     *,
     width: int = 1024,
+    jobs: int = 1,
     told: Callable[[int, int], None] = lambda done, total: None,
 ) -> dict[str, str]:
     """Photographs every keyframe of a simulated walk with one camera.
@@ -41,6 +44,7 @@ def record(
         seed: of the building's looks and the camera.
         quality: of the rendering.
         width: of the images.
+        jobs: processes, this one included; the pictures do not depend on it.
         told: called with the number of pictures done and of all.
 
     Returns:
@@ -49,6 +53,45 @@ def record(
     Raises:
         InputError: the building cannot be labelled from a keyframe, or a place cannot be written.
     """
+    for part in (IMAGES, DEPTHS, TRUE_LAYOUTS):
+        make_folder(folder / part)
+    count = len(simulated.keyframes)
+    mine, *others = (range(k, count, jobs) for k in range(jobs))
+    # Fresh processes: forked ones would inherit the threads of the progress display.
+    context = multiprocessing.get_context("spawn")
+    with ProcessPoolExecutor(max(1, len(others)), mp_context=context) as pool:
+        working = [
+            pool.submit(_photograph, folder, simulated, seed, quality, width, numbers)
+            for numbers in others
+        ]
+        _photograph(
+            folder,
+            simulated,
+            seed,
+            quality,
+            width,
+            mine,
+            lambda k: told(min(k + jobs, count), count),
+        )
+        for work in working:
+            work.result()
+    return {keyframe.id: _image(keyframe.id) for keyframe in simulated.keyframes}
+
+
+def _image(key: str) -> str:
+    return f"{IMAGES}/{key}.jpg"
+
+
+def _photograph(
+    folder: Path,
+    simulated: SimulatedScene,
+    seed: int,
+    quality: Quality,
+    width: int,
+    numbers: Sequence[int],
+    told: Callable[[int], None] = lambda number: None,
+) -> None:
+    """Takes some of the pictures."""
     scene_seed, camera_seed, *seeds = np.random.SeedSequence(seed).spawn(
         2 + len(simulated.keyframes)
     )
@@ -59,11 +102,8 @@ def record(
     labeller = Labeller(scene)
     # The file itself is the only compression.
     development = replace(draw_development(np.random.default_rng(camera_seed)), jpeg=0)
-    for part in (IMAGES, DEPTHS, TRUE_LAYOUTS):
-        make_folder(folder / part)
-    images = {}
-    for k, keyframe in enumerate(simulated.keyframes):
-        pose, key = poses[k], keyframe.id
+    for k in numbers:
+        pose, key = poses[k], simulated.keyframes[k].id
         camera = pose.translation - np.array([0.0, simulated.camera_height_m, 0.0])
         panorama = scene.panorama(camera, pose.rotation, width)
         picture = develop(panorama.radiance, development, np.random.default_rng(seeds[k]))
@@ -75,9 +115,7 @@ def record(
             width=width,
             level_from_cam=about_y(np.array([-heading]))[0] @ pose.rotation,
         )
-        images[key] = f"{IMAGES}/{key}.jpg"
-        write_bytes(folder / images[key], jpeg(picture, _JPEG_QUALITY))
+        write_bytes(folder / _image(key), jpeg(picture, _JPEG_QUALITY))
         write_depth(folder / DEPTHS / f"{key}.png", panorama.distance_m)
         write_layout_npz(folder / TRUE_LAYOUTS / f"{key}.npz", labels.closed)
-        told(k + 1, len(simulated.keyframes))
-    return images
+        told(k)

@@ -1,0 +1,93 @@
+"""Tables of camera poses found in images: walks and photo tours."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+from panoplan.bench.markdown import number, table
+from panoplan.bench.record import of_benchmark
+
+
+def walks(files: list[dict[str, Any]]) -> str:
+    """How well rendered walks were followed."""
+    parts = []
+    for data in of_benchmark(files, "odometry"):
+        rows = []
+        for f in data["figures"]:
+            final, given = f["final"] or {}, f["as_given"] or {}
+            rows.append(
+                [
+                    f["scene"],
+                    str(f["keyframes"]),
+                    f"{sum(f['maps'])} in {len(f['maps'])}",
+                    number(final.get("length_m"), 0, " m"),
+                    number(final.get("ate_percent_of_length"), 3, " %"),
+                    number(given.get("ate_percent_of_length"), 3, " %"),
+                    number(given.get("worst_cm"), 1, " cm"),
+                    number(f["keyframes_a_cpu_second"], 1),
+                    number(f["cpu_s_last"]["95 %"] / f["cpu_s_first"]["95 %"], 2),
+                ]
+            )
+        heads = [
+            "walk", "keyframes", "with poses, maps", "way", "error", "error as given",
+            "worst as given", "keyframes a CPU second", "last 50 / first 50",
+        ]  # fmt: skip
+        parts.append(
+            "Rendered walks; position errors after a similarity (root mean square, percent of the "
+            "way), at the end and as each pose was given; time a keyframe at 95 %, of the last 50 "
+            f"and of the first.\n\n{table(heads, rows)}"
+        )
+    return "\n".join(parts)
+
+
+def tours(files: list[dict[str, Any]]) -> str:
+    """How many photos of tours were joined, and how well."""
+    parts = []
+    for data in of_benchmark(files, "tour"):
+        rows = []
+        for f in data["figures"]:
+            rows.append(_tour(f["scene"], f))
+            rows += [_tour(f"{f['scene']}, draw {k}", d) for k, d in enumerate(f["draws"])]
+        whole = data["figures"]
+        if len(whole) > 1:
+            rows.append(["all", *_together(whole)])
+        heads = [
+            "tour", "photos", "in the largest group", "misplaced in it", "position, median",
+            "90 %", "heading", "CPU",
+        ]  # fmt: skip
+        parts.append(
+            "Photo tours with layouts from files; misplaced is more than 0.5 m or 6° off with the "
+            f"scale fixed, errors are after a similarity.\n\n{table(heads, rows)}"
+        )
+    return "\n".join(parts)
+
+
+def _tour(name: str, figures: dict[str, Any]) -> list[str]:
+    largest = figures["groups"][0]
+    median_m, p90_m = largest["median_m"], largest["p90_m"]
+    return [
+        name,
+        str(figures["photos"]),
+        str(largest["photos"]),
+        str(len(largest["misplaced"])),
+        number(None if median_m is None else 100 * median_m, 1, " cm"),
+        number(None if p90_m is None else 100 * p90_m, 1, " cm"),
+        number(largest["heading_deg"], 2, "°"),
+        number(figures["cpu_seconds"], 0, " s"),
+    ]
+
+
+def _together(tours: Sequence[dict[str, Any]]) -> list[str]:
+    photos = sum(f["photos"] for f in tours)
+    largest = [f["groups"][0] for f in tours]
+    joined = sum(group["photos"] for group in largest)
+    wrong = sum(len(group["misplaced"]) for group in largest)
+    seconds = sum(f["cpu_seconds"] for f in tours)
+    return [
+        str(photos),
+        f"{joined} ({100 * joined / photos:.0f} %)",
+        f"{wrong} ({100 * wrong / max(joined, 1):.1f} %)",
+        "–", "–", "–",
+        number(seconds, 0, " s"),
+    ]  # fmt: skip

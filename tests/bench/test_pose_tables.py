@@ -1,0 +1,52 @@
+"""Tables of walks and tours, from figures as the benchmarks write them."""
+
+from panoplan.bench.pose_tables import tours, walks
+
+MACHINE = {"machine": {"cores": 2, "processor": "any"}, "settings": {"preset": "default"}}
+
+
+def _group(count, misplaced, median_m=None):
+    told = {"median_m": median_m, "p90_m": median_m, "heading_deg": None}
+    return {"photos": count, "misplaced": misplaced, **told}
+
+
+def _tour(scene, photos, group):
+    return {
+        "scene": scene,
+        "photos": photos,
+        "groups": [group],
+        "cpu_seconds": 9.6,
+        "draws": [],
+    }
+
+
+def test_tours_are_summed_over_photos():
+    drawn = {**_tour("", 3, _group(1, [])), "draws": []}
+    figures = [
+        {**_tour("one", 8, _group(6, ["a"], 0.123)), "draws": [drawn]},
+        _tour("two", 12, _group(9, [], 0.05)),
+    ]
+    text = tours([{"benchmark": "tour", "figures": figures, **MACHINE}])
+    assert "| one | 8 | 6 | 1 | 12.3 cm | 12.3 cm | – | 10 s |" in text
+    assert "| one, draw 0 | 3 | 1 | 0 | – | – | – | 10 s |" in text
+    assert "| all | 20 | 15 (75 %) | 1 (6.7 %) |" in text
+
+
+def test_walks_tell_errors_at_the_end_and_as_given():
+    figures = {
+        "scene": "one",
+        "keyframes": 300,
+        "maps": [290, 8],
+        "final": {"length_m": 40.4, "ate_percent_of_length": 0.0312},
+        "as_given": {"ate_percent_of_length": 0.0871, "worst_cm": 9.04},
+        "keyframes_a_cpu_second": 4.56,
+        "cpu_s_first": {"median": 0.1, "95 %": 0.2},
+        "cpu_s_last": {"median": 0.1, "95 %": 0.25},
+    }
+    text = walks([{"benchmark": "odometry", "figures": [figures], **MACHINE}])
+    row = "| one | 300 | 298 in 2 | 40 m | 0.031 % | 0.087 % | 9.0 cm | 4.6 | 1.25 |"
+    assert row in text
+
+
+def test_nothing_measured_is_no_table():
+    assert walks([]) == tours([]) == ""
