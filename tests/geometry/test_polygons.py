@@ -38,3 +38,4 @@ def test_what_encloses_nothing_is_empty():
     line = np.array([[0.0, 0.0], [1.0, 0.0], [2.0, 0.0]])
     assert untangled(line).shape == (0, 2)
     assert untangled(line[:2]).shape == (0, 2)
+    assert [signed_area(line[:count]) for count in range(4)] == [0.0] * 4

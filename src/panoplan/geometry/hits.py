@@ -16,7 +16,7 @@ class Hits(NamedTuple):
     """What each of N rays meets first.
 
     Attributes:
-        edge: (N,) index of the edge, by the point that it begins at.
+        edge: (N,) index of the edge, by the point that it begins at; 0 where the ray meets none.
         at: (N,) distance along the edge, NaN where the ray meets none.
         range: (N,) distance along the ray; infinite where it meets none.
         sine: (N,) of the angle between ray and edge, 0-1; NaN where it meets none.

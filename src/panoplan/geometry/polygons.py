@@ -10,7 +10,12 @@ FloatArray = NDArray[np.float64]
 
 
 def signed_area(polygon: FloatArray) -> float:
-    """Area of a polygon, positive where it runs counter-clockwise, by the shoelace formula."""
+    """Area of a polygon, positive where it runs counter-clockwise, by the shoelace formula.
+
+    Fewer than three corners enclose 0.
+    """
+    if len(polygon) < 3:
+        return 0.0
     x, y = (polygon - polygon[0]).T
     return float(0.5 * np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y))
 
