@@ -287,5 +287,10 @@ def test_misplaced_stills_are_moved_in_the_plan_and_told():
     assert {s.keyframe for s in plan.skipped if s.what == "pose"} == names
     for pose, keyframe in zip(plan.trajectory, scene.keyframes, strict=True):
         assert math.dist(pose.position, keyframe.pose.translation[[0, 2]]) < 0.2
+    # The rooms' densities have moved with their cameras.
+    cell = Config().rooms.cell_ch
+    for room in estimator.state.rooms:
+        at = np.floor(np.array([view.camera for view in room.views]) / cell).astype(int)
+        assert room.density.mask[tuple((at - room.density.first_cell).T)].all()
     # Nothing is left to be found.
     assert not estimator.finish()

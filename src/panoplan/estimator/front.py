@@ -40,6 +40,7 @@ class FloorPlanEstimator:
 
         Raises:
             InputError: a keyframe with this id was given before.
+            ConfigError: the warm-up is a fraction of a walk whose length is not known.
         """
         if keyframe.id in self._ids:
             raise InputError(f"keyframe {keyframe.id}", "an id given before", "a new id")

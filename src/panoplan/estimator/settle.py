@@ -131,7 +131,12 @@ def _placed_anew(
     rooms = []
     for room in state.rooms:
         own = [moved.get(view.index, view) for view in room.views]
-        rooms.append(replace(room, views=tuple(view for view in own if view is not None)))
+        left = tuple(view for view in own if view is not None)
+        if left != room.views:
+            corrected = [cameras[view.index].correction.apply(view) for view in left]
+            density = _density(corrected, config) if left else room.density
+            room = replace(room, views=left, density=density)
+        rooms.append(room)
     current = None if state.current is None else state.rooms[state.current].number
     kept = tuple(room for room in rooms if room.views)
     return replace(

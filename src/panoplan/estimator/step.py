@@ -43,6 +43,9 @@ def step(state: State, keyframe: Keyframe, config: Config) -> tuple[State, tuple
 
     Returns:
         What is known now, and what happened.
+
+    Raises:
+        ConfigError: the warm-up is a fraction of a walk whose length is not known.
     """
     if state.frame is None:
         turned = turn(-heading_of(keyframe.pose.rotation))
@@ -85,6 +88,13 @@ def finish(state: State, config: Config) -> tuple[State, tuple[Event, ...]]:
 
     Layouts that still wait for their level are of a new one where they agree. The walk may still
     go on afterwards.
+
+    Args:
+        state: what is known.
+        config: settings, as at every step.
+
+    Returns:
+        What is known now, and what happened.
     """
     events: list[Event] = []
     if state.scale is None and state.waiting:
