@@ -48,6 +48,7 @@ def test_the_paper_preset_has_what_the_paper_prints():
         ({"scale": {"steps": []}}, "tuple"),
         ({"seed": True}, "int"),
         ({"planes": {"max_residual_ch": float("nan")}}, "float"),
+        ({"misplaced": {"conflict_share": 0.2}}, "more than innocent_share = 0.2"),
     ],
 )
 def test_unknown_and_unfitting_settings_are_refused(changes, message):

@@ -647,7 +647,11 @@ class GroupingConfig:
         high=10.0,
     )
     neck_min_ch: float = _setting(
-        0.4, "... and at least so long.", unit="camera heights", low=0.0, high=10.0
+        0.4,
+        "... and at least so long, with floor at least so wide on both sides.",
+        unit="camera heights",
+        low=0.0,
+        high=10.0,
     )
     around_views: int = _setting(
         100,
@@ -756,6 +760,15 @@ class MisplacedConfig:
         high=100.0,
     )
 
+    def __post_init__(self) -> None:
+        """Checks that the two shares are in order."""
+        if self.conflict_share <= self.innocent_share:
+            raise ConfigError(
+                "misplaced.conflict_share",
+                repr(self.conflict_share),
+                f"more than innocent_share = {self.innocent_share}",
+            )
+
 
 @dataclass(frozen=True)
 class FusionConfig:
@@ -850,7 +863,7 @@ class OutlineConfig:
         high=1.0,
     )
     fit_rounds: int = _setting(
-        3, "Fits in a row, each with half, a third, ... of that reach.", low=1, high=20
+        3, "Fits in a row, after the first with half, a third, ... of that reach.", low=1, high=20
     )
     grazing_deg: float = _setting(
         10.0,
@@ -920,7 +933,10 @@ class AdjustConfig:
         4, "Gauss-Newton steps for each of `odometry_multiples`.", low=1, high=100
     )
     stride: int = _setting(
-        4, "Every so many columns are used; neighbours err alike.", low=1, high=64
+        4,
+        "Every so many columns (of 1024; in proportion otherwise) are used; neighbours err alike.",
+        low=1,
+        high=64,
     )
     min_views: int = _setting(
         4,
@@ -944,7 +960,10 @@ class AdjustConfig:
         high=89.0,
     )
     min_columns: int = _setting(
-        24, "Fewer columns on a wall say little of its direction.", low=2, high=1024
+        24,
+        "Fewer columns (of 1024) on a wall say little of its direction.",
+        low=2,
+        high=1024,
     )
     correlation_columns: float = _setting(
         76.0,

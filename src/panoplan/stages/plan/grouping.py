@@ -147,7 +147,7 @@ def _joined(
         middle = passage.mean(axis=0)
         width = min(_width(territories, k, middle, length, fusion.cell_ch) for k in (one, other))
         # Where either is a sliver, there is no floor to be walked from one to the other.
-        if config.neck_min_ch < width < length / config.neck_ratio:
+        if width > config.neck_min_ch and length > config.neck_ratio * width:
             joined[one, other] = True
     count, part = connected_components(joined, directed=False)
     return [
