@@ -2,6 +2,7 @@ import numpy as np
 import pytest
 
 from panoplan.geometry.polar import (
+    PROFILE_BINS,
     at_boundaries,
     intrusions,
     mutual_overlaps,
@@ -20,11 +21,20 @@ def _circle(radius, width=720):
 
 def test_profile_of_a_circle_and_of_a_gap():
     points = _circle(2.0)
-    points[100:200] = np.nan
-    profile = range_profile(points, 360, np.deg2rad(2))
+    points[90:270] = np.nan
+    profile = range_profile(points)
     known = np.isfinite(profile)
     np.testing.assert_allclose(profile[known], 2.0, rtol=1e-6)
-    assert (~known).sum() == pytest.approx(50, abs=2)
+    # A quarter of the columns.
+    assert (~known).sum() == pytest.approx(PROFILE_BINS / 4, abs=2)
+
+
+@pytest.mark.parametrize("width", [16, 64, 200, 256])
+def test_profile_of_few_columns_is_known_between_neighbours_only(width):
+    points = _circle(2.0, width)
+    np.testing.assert_allclose(range_profile(points), 2.0, rtol=1e-6)
+    points[width // 2] = np.nan
+    assert np.isnan(range_profile(points)).sum() == pytest.approx(2 * PROFILE_BINS / width, abs=1)
 
 
 def test_cells_inside_are_free_and_those_beyond_speak_against():
@@ -126,6 +136,18 @@ def test_overlap_of_two_squares_over_the_smaller():
     half_off = mutual_overlaps(moved, profiles[[0, 0, 0]], 10.0, 0.02)
     assert half_off[0, 1] == pytest.approx(0.5 * 0.85, abs=0.02)
     assert (common == common.T).all()
+
+
+def test_a_view_that_knows_nothing_overlaps_none_and_half_a_view_half():
+    square = _square_profile(np.zeros(2), 1.0)
+    half = np.where(np.arange(1024) < 512, square, np.nan)
+    profiles = np.stack([square, np.full(1024, np.nan), half])
+    common = mutual_overlaps(np.zeros((3, 2)), profiles, 10.0, 0.02)
+    assert common[1].tolist() == [0.0, 1.0, 0.0]
+    assert common[0, 2] == pytest.approx(1.0, abs=0.01)
+    shifted = np.array([[0.0, 0.0], [0.0, 0.0], [1.0, 0.0]])
+    # The half that it sees is then the right half of the whole, all of it.
+    assert mutual_overlaps(shifted, profiles, 10.0, 0.02)[0, 2] == pytest.approx(1.0, abs=0.01)
 
 
 def test_intrusion_of_one_circle_into_another():

@@ -6,6 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from panoplan.geometry.sphere import column_heading
+
 BoolArray = NDArray[np.bool_]
 FloatArray = NDArray[np.float64]
 Float32Array = NDArray[np.float32]
@@ -13,38 +15,50 @@ Float32Array = NDArray[np.float32]
 
 PROFILE_BINS = 1024
 """Headings of a profile, as many as a layout usually has columns."""
-MAX_GAP_RAD = float(np.deg2rad(2.0))
-"""Between columns farther apart than this, a boundary is unknown."""
+_MAX_GAP_RAD = float(np.deg2rad(2.0))
+_MAX_GAP_COLUMNS = 1.5
+"""Between known columns farther apart than both, a boundary is unknown. A layout of few columns
+has neighbours farther apart than the first, and a tilt spreads some of them."""
 
 
-def range_profile(
-    offsets: FloatArray, bins: int = PROFILE_BINS, max_gap: float = MAX_GAP_RAD
-) -> FloatArray:
+def profile_headings(bins: int) -> FloatArray:
+    """(B,) headings of a profile's bins in rad, from the second axis towards the first.
+
+    Bin b looks along 2π(b + ½)/B − π.
+    """
+    return column_heading(np.arange(bins, dtype=np.float64), bins)
+
+
+def profile_rays(bins: int) -> FloatArray:
+    """(B, 2) unit directions of a profile's bins."""
+    headings = profile_headings(bins)
+    return np.stack([np.sin(headings), np.cos(headings)], axis=-1)
+
+
+def range_profile(offsets: FloatArray) -> FloatArray:
     """Ranges at evenly spaced headings.
 
     Args:
-        offsets: (W, 2) boundary points relative to the camera, NaN where unknown.
-        bins: number of headings; bin b looks along 2π(b + ½)/bins − π from the second axis
-            towards the first.
-        max_gap: headings farther apart than this (rad) leave unknown bins between them.
+        offsets: (W, 2) boundary points relative to the camera, of all columns of a layout, NaN
+            where unknown.
 
     Returns:
-        (bins,) ranges, NaN where unknown.
+        (`PROFILE_BINS`,) ranges along `profile_headings`, NaN where unknown.
     """
     known = offsets[np.isfinite(offsets[:, 0])]
-    out = np.full(bins, np.nan)
+    out = np.full(PROFILE_BINS, np.nan)
     if len(known) < 2:
         return out
     heading = np.arctan2(known[:, 0], known[:, 1])
     order = np.argsort(heading, kind="stable")
     heading, distance = heading[order], np.hypot(known[order, 0], known[order, 1])
-    at = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
+    at = profile_headings(PROFILE_BINS)
     after = np.searchsorted(heading, at)
     before, after = (after - 1) % len(heading), after % len(heading)
     gap = np.mod(heading[after] - heading[before], 2 * np.pi)
     share = np.mod(at - heading[before], 2 * np.pi) / np.where(gap > 0, gap, 1.0)
     filled = distance[before] + np.clip(share, 0, 1) * (distance[after] - distance[before])
-    close = gap <= max_gap
+    close = gap <= max(_MAX_GAP_RAD, _MAX_GAP_COLUMNS * 2 * np.pi / len(offsets))
     out[close] = filled[close]
     return out
 
@@ -305,14 +319,12 @@ def at_boundaries(
         says nothing of it.
     """
     found = np.zeros(len(cameras), dtype=np.bool_)
-    bins = profiles.shape[1]
-    angles = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
-    _at_boundaries(cameras, profiles, np.sin(angles), np.cos(angles), reach, limit, found)
+    _at_boundaries(cameras, profiles, profile_rays(profiles.shape[1]), reach, limit, found)
     return found
 
 
 @njit(cache=True)
-def _at_boundaries(cameras, profiles, sines, cosines, reach, limit, found):
+def _at_boundaries(cameras, profiles, rays, reach, limit, found):
     views, bins = profiles.shape
     for i in range(views):
         for j in range(views):
@@ -320,20 +332,20 @@ def _at_boundaries(cameras, profiles, sines, cosines, reach, limit, found):
             away = np.sqrt(x * x + y * y)
             if i == j or away > reach:
                 continue
-            ahead = profiles[j, int((_heading(x, y) + np.pi) * bins / (2 * np.pi)) % bins]
+            straight = int((_heading(x, y) + np.pi) * bins / (2 * np.pi))
+            ahead = profiles[j, straight % bins]
             # The boundary is at least as near as it is straight ahead.
             if np.isnan(ahead) or (ahead > away and ahead - away < limit and found[i]):
                 continue
             nearest = np.inf
             # What is nearer than the limit lies within this angle of straight ahead.
-            straight = int((_heading(x, y) + np.pi) * bins / (2 * np.pi))
             span = bins // 2
             if away > limit:
                 span = min(span, int(np.arcsin(limit / away) * bins / (2 * np.pi)) + 2)
             for k in range(straight - span, straight + span + 1):
                 b = k % bins
                 r = profiles[j, b]
-                dx, dy = r * sines[b] - x, r * cosines[b] - y
+                dx, dy = r * rays[b, 0] - x, r * rays[b, 1] - y
                 squared = dx * dx + dy * dy
                 if squared < nearest:
                     nearest = squared
@@ -370,9 +382,7 @@ def intrusions(
         (V, U) share of the view's known directions, 0-1.
     """
     shares = np.zeros((len(cameras), len(into)))
-    bins = profiles.shape[1]
-    angles = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
-    rays = np.stack([np.sin(angles), np.cos(angles)], axis=1)
+    rays = profile_rays(profiles.shape[1])
     _intrusions(
         cameras, profiles, sigmas, into, into_profiles, into_sigmas, rays, depth, reach, shares
     )
@@ -414,14 +424,14 @@ def mutual_overlaps(
 
     Args:
         cameras: (V, 2) positions.
-        profiles: (V, B) ranges as `range_profile` gives them.
+        profiles: (V, B) ranges as `range_profile` gives them, NaN where unknown.
         radius: regions are clipped at it.
         cell: cell size that areas are counted in.
 
     Returns:
-        (V, V) symmetric, 0-1, 1 on the diagonal.
+        (V, V) symmetric, 0-1, 1 on the diagonal; 0 with views that know no range.
     """
-    reach = np.minimum(np.nan_to_num(np.nanmax(profiles, axis=1)), radius)
+    reach = np.minimum(np.fmax.reduce(profiles, axis=1, initial=0.0), radius)
     low = np.floor((cameras - reach[:, None]) / cell).astype(np.int64)
     high = np.floor((cameras + reach[:, None]) / cell).astype(np.int64) + 1
     # Rows of whole words on one lattice, so that two masks are compared 64 cells at a time.

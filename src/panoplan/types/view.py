@@ -71,6 +71,11 @@ class RegisteredLayout:
     ceiling: float = math.nan
     spans: Spans | None = None
 
+    @property
+    def column_worth(self) -> float:
+        """How many columns of a layout of 1024 one column is as wide as."""
+        return 1024 / len(self.boundary)
+
 
 @dataclass(frozen=True)
 class Correction:

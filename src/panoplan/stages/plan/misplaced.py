@@ -18,7 +18,7 @@ from scipy.spatial import KDTree
 from scipy.spatial.distance import squareform
 
 from panoplan.config import GroupingConfig, MisplacedConfig
-from panoplan.geometry.polar import intrusions, mutual_overlaps
+from panoplan.geometry.polar import intrusions, mutual_overlaps, profile_rays
 from panoplan.stages.plan.sight import Sights, sights
 from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.view import RegisteredLayout
@@ -260,8 +260,7 @@ def _faces(view: RegisteredLayout) -> list[tuple[float, FloatArray, FloatArray]]
 
 def _walls(seen: Sights, units: Sequence[tuple[int, ...]], config: MisplacedConfig) -> _Walls:
     bins = seen.profiles.shape[1]
-    at = 2 * np.pi * (np.arange(bins) + 0.5) / bins - np.pi
-    rays = np.stack([np.sin(at), np.cos(at)], axis=1)
+    rays = profile_rays(bins)
     ranges = seen.profiles[..., None]
     points = seen.cameras[:, None] + ranges * rays
     ahead = np.roll(points, -_SPAN, axis=1) - np.roll(points, _SPAN, axis=1)
@@ -283,7 +282,7 @@ def _walls(seen: Sights, units: Sequence[tuple[int, ...]], config: MisplacedConf
 _SPAN = 8
 """Directions between the places looked at."""
 _STEEP = 12.0
-"""Boundaries at a smaller angle to the ray than the arctangent of a sixth are taken for jumps."""
+"""Boundaries at a smaller angle to the ray than the arcsine of a sixth are taken for jumps."""
 
 
 @dataclass(frozen=True)

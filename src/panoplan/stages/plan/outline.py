@@ -53,19 +53,32 @@ class WallLine:
 
 @dataclass(frozen=True, eq=False)
 class _Columns:
-    """Known boundary columns of all views of a room: points, directions, sigmas, views."""
+    """Known boundary columns of all views of a room.
+
+    Attributes:
+        points: (N, 2) walk frame.
+        rays: (N, 2) unit directions from the camera.
+        sigmas: (N,) standard deviations of the ranges.
+        view: (N,) index of the view.
+        worth: (N,) how many columns of a layout of 1024 each is as wide as.
+    """
 
     points: FloatArray
     rays: FloatArray
     sigmas: FloatArray
     view: IntArray
+    worth: FloatArray
 
     def near(self, wall: WallLine, reach: float) -> _Columns:
         """Those within a distance of a wall's line."""
         off = (self.points - wall.middle) @ wall.outward
         chosen = np.flatnonzero(np.abs(off) < reach)
         return _Columns(
-            self.points[chosen], self.rays[chosen], self.sigmas[chosen], self.view[chosen]
+            self.points[chosen],
+            self.rays[chosen],
+            self.sigmas[chosen],
+            self.view[chosen],
+            self.worth[chosen],
         )
 
 
@@ -93,8 +106,7 @@ def outline(floor: Floor, views: Sights, config: OutlineConfig, fusion: FusionCo
     if not _is_simple(ring):
         # Walls of a narrow notch may cross: it ends there.
         ring, sigmas = _untangled(ring, sigmas)
-        enclosed = signed_area(ring) if len(ring) else 0.0
-        if enclosed < _ENCLOSED * floor.mask.sum() * fusion.cell_ch**2:
+        if signed_area(ring) < _ENCLOSED * floor.mask.sum() * fusion.cell_ch**2:
             return RoomShape(None, "its walls do not close")
     inner = []
     labels, count = ndimage.label(floor.holes)
@@ -119,7 +131,7 @@ def holes_within(ring: FloatArray, inner: Sequence[FloatArray]) -> tuple[FloatAr
         The simple ones inside, without one that meets a larger one or the outline.
     """
     holes: list[FloatArray] = []
-    for hole in sorted(inner, key=lambda hole: signed_area(hole) if len(hole) else 0.0):
+    for hole in sorted(inner, key=signed_area):
         left = shapely.Polygon(ring, holes)
         if _is_simple(hole[::-1]) and left.contains_properly(shapely.Polygon(hole)):
             holes.append(hole)
@@ -155,17 +167,17 @@ def _columns(views: Sights) -> _Columns:
     layouts = list(views.views)
     points = np.concatenate([view.boundary for view in layouts])
     sigmas = np.concatenate([view.sigmas for view in layouts])
-    counts = [len(view.boundary) for view in layouts]
-    view = np.repeat(np.arange(len(views)), counts)
+    view = np.repeat(np.arange(len(layouts)), [len(view.boundary) for view in layouts])
+    worth = np.array([view.column_worth for view in layouts])
     known = np.isfinite(points[:, 0])
     points, sigmas, view = points[known], sigmas[known], view[known]
     rays = points - views.cameras[view]
     ranges = np.hypot(*rays.T)
-    return _Columns(points, rays / ranges[:, None], sigmas, view)
+    return _Columns(points, rays / ranges[:, None], sigmas, view, worth[view])
 
 
 def _is_simple(ring: FloatArray) -> bool:
-    return len(ring) >= 3 and signed_area(ring) > 0 and shapely.Polygon(ring).is_valid
+    return signed_area(ring) > 0 and shapely.Polygon(ring).is_valid
 
 
 def _pieces(
@@ -202,7 +214,7 @@ def _zero_line(mask: BoolArray, field: FloatArray) -> FloatArray:
     )
     values = np.pad(np.where(mask, inside, outside), 1, constant_values=-1.0)
     lines = cast(list[FloatArray], contour_generator(z=values.T).lines(0.0))
-    ring = max(lines, key=lambda line: abs(signed_area(line[:-1])) if len(line) > 3 else 0.0)
+    ring = max(lines, key=lambda line: abs(signed_area(line[:-1])))
     ring = ring[:-1] - 0.5
     return ring if signed_area(ring) > 0 else ring[::-1]
 
@@ -245,7 +257,8 @@ def _fit(wall: WallLine, columns: _Columns, reach: float, config: OutlineConfig)
         & (at < wall.end - margin)
         & (facing > np.sin(np.deg2rad(config.grazing_deg)))
     )
-    if len(chosen) < _FEWEST_COLUMNS:
+    worth = columns.worth[chosen]
+    if worth.sum() < _FEWEST_COLUMNS:
         return None
     at, off, view = at[chosen], off[chosen], columns.view[chosen]
     across = np.maximum(columns.sigmas[chosen] * facing[chosen], _FINEST_CH)
@@ -262,7 +275,7 @@ def _fit(wall: WallLine, columns: _Columns, reach: float, config: OutlineConfig)
     along = wall.along + turn * outward
     along = along / np.hypot(*along)
     middle = wall.middle + outward * (mean_off - turn * mean_at)
-    independent = np.maximum(1.0, count / config.correlation_columns)
+    independent = np.maximum(1.0, np.bincount(view, worth) / config.correlation_columns)
     information = np.bincount(view, weight) * independent
     # Where views differ by more than their sigmas, the wall is known less well, and better where
     # by less: Birge's ratio, with a few views' worth of trust in the sigmas.
@@ -282,6 +295,7 @@ def _fit(wall: WallLine, columns: _Columns, reach: float, config: OutlineConfig)
 _CORNER_MARGIN_CH, _CORNER_MARGIN_SHARE = 0.07, 0.15
 """Columns this near to a wall's ends may be of its neighbours."""
 _FEWEST_COLUMNS = 8
+"""Of 1024, of all views together."""
 _TRUST = 4.0
 _FINEST_CH = 0.004
 

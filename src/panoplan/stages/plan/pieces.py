@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -82,7 +83,9 @@ def _of_view(
 ) -> tuple[IntArray, FloatArray, FloatArray]:
     """Walls (P,), ends (P, 2, 2) relative to the camera and sigmas (P,)."""
     offsets = view.boundary - view.camera
-    known = np.flatnonzero(np.isfinite(offsets[:, 0]))[:: config.stride]
+    stride = max(1, round(config.stride / view.column_worth))
+    width = stride * view.column_worth
+    known = np.flatnonzero(np.isfinite(offsets[:, 0]))[::stride]
     offsets, sigmas = offsets[known], view.sigmas[known]
     ranges = np.hypot(*offsets.T)
     hits = first_hits(view.camera, offsets / ranges[:, None], ring)
@@ -91,8 +94,8 @@ def _of_view(
     near &= hits.sine > np.sin(np.deg2rad(config.grazing_deg))
     # What all columns of a panorama have in common is its factor, not their noise.
     own = np.maximum(sigmas**2 - (config.common_share * ranges) ** 2, (_OWN * sigmas) ** 2)
-    fewest = max(1, -(-config.min_columns // config.stride))
-    independent = config.stride / config.correlation_columns
+    fewest = math.ceil(config.min_columns / width)
+    independent = width / config.correlation_columns
     across = np.sqrt(own) * hits.sine
     wall = np.where(near, hits.edge, -1)
     along, _ = edge_directions(ring)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from panoplan.geometry.polar import PROFILE_BINS, range_profile
+from panoplan.geometry.polar import PROFILE_BINS, profile_headings, range_profile
 from panoplan.types.arrays import FloatArray
 from panoplan.types.view import RegisteredLayout, picked
 
@@ -52,7 +52,7 @@ def sights(views: Sequence[RegisteredLayout]) -> Sights:
     profiles = np.empty((len(views), PROFILE_BINS))
     sigmas = np.empty((len(views), PROFILE_BINS))
     cameras = np.empty((len(views), 2))
-    at = 2 * np.pi * (np.arange(PROFILE_BINS) + 0.5) / PROFILE_BINS - np.pi
+    at = profile_headings(PROFILE_BINS)
     for k, view in enumerate(views):
         cameras[k] = view.camera
         offsets = view.boundary - view.camera
