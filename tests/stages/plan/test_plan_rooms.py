@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from shapely import Polygon, box, unary_union
-from tests.scenes import L_SHAPE, RECTANGLE, walk
+from tests.scenes import L_SHAPE, RECTANGLE, exact_layout, walk
 
 from panoplan.config import Config
 from panoplan.stages.plan import fusion, grouping
@@ -20,7 +20,7 @@ LEFT = [[-1.0, 0.2], [0.5, -0.7], [1.2, 0.8], [-0.4, 0.9]]
 
 
 def _views(*parts):
-    """Registered layouts of (polygon, cameras, noise in rad or None) in turn."""
+    """Registered layouts of (polygon, cameras) in turn."""
     keyframes = [k for polygon, cameras in parts for k in walk(polygon, cameras)]
     return [
         register(cast(k, i, np.zeros(3), np.eye(2), CONFIG.registration), 1.0)
@@ -113,6 +113,46 @@ def test_a_gross_view_inside_a_room_makes_none():
     elsewhere = np.array([[0.9, -0.2], [1.5, -0.2], [1.5, 4.0], [0.9, 4.0]])
     rooms = plan_rooms(_views((RECTANGLE, LEFT), (elsewhere, [[1.2, 0.0]])), CONFIG)
     assert [room.members for room in rooms] == [(0, 1, 2, 3, 4)]
+
+
+def _beside(*boxes):
+    """The floor beside a camera at (0, 0) whose view alone holds boxes of 0.1 wide cells."""
+    total = np.full((60, 60), -1.0)
+    for low_i, low_j, high_i, high_j in boxes:
+        total[low_i + 30 : high_i + 30, low_j + 30 : high_j + 30] = 1.0
+    evidence = fusion.Evidence((-30, -30), total, np.ones((60, 60)))
+    settings = replace(CONFIG.fusion, cell_ch=0.1, opening_cells=2)
+    floor = fusion.floor_beside(evidence, np.zeros((60, 60), bool), np.zeros(2), settings)
+    return None if floor is None else (np.argwhere(floor.mask).min(axis=0) - 30).tolist()
+
+
+def test_the_floor_beside_a_doorway_is_the_nearest_that_is_large_enough():
+    closet, beyond, sliver = (1, -4, 9, 4), (-30, -30, -3, 30), (-2, -1, 0, 1)
+    assert _beside(closet, beyond) == [1, -4]
+    assert _beside(closet, beyond, sliver) == [1, -4]
+    # Gross ranges show floor behind the far wall of the room.
+    assert _beside((-30, -5, -10, 5)) is None
+    assert _beside(sliver) is None
+    assert _beside() is None
+
+
+@pytest.mark.parametrize("width", [64, 512])
+def test_layouts_of_few_columns_show_the_same_room_as_surely(width):
+    def of(width):
+        keyframes = [
+            replace(k, layout=exact_layout(RECTANGLE, at, k.pose.rotation, width=width))
+            for k, at in zip(walk(RECTANGLE, LEFT), LEFT, strict=True)
+        ]
+        views = [
+            register(cast(k, i, np.zeros(3), np.eye(2), CONFIG.registration), 1.0)
+            for i, k in enumerate(keyframes)
+        ]
+        (room,) = plan_rooms(views, CONFIG)
+        return room.shape
+
+    few, usual = of(width), of(1024)
+    assert _iou(few.polygon, RECTANGLE) > 0.98
+    assert np.sort(few.sigmas) == pytest.approx(np.sort(usual.sigmas), rel=0.2)
 
 
 def test_no_floor_is_told():

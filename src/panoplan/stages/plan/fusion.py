@@ -9,7 +9,7 @@ import numpy as np
 from scipy import ndimage
 
 from panoplan.config import FusionConfig
-from panoplan.geometry.polar import signed_distance_sums
+from panoplan.geometry.polar import profile_rays, signed_distance_sums
 from panoplan.stages.plan.sight import Sights
 from panoplan.types.arrays import BoolArray, FloatArray, IntArray
 
@@ -117,10 +117,9 @@ _OUTLYING = 0.002
 
 
 def _box(views: Sights, reach: float) -> tuple[FloatArray, FloatArray]:
-    heading = 2 * np.pi * (np.arange(views.profiles.shape[1]) + 0.5) / views.profiles.shape[1]
-    ranges = np.minimum(views.profiles, reach)
-    ahead = -np.stack([np.sin(heading), np.cos(heading)], axis=-1)
-    ends = (views.cameras[:, None] + ranges[..., None] * ahead).reshape(-1, 2)
+    ranges = np.minimum(views.profiles, reach)[..., None]
+    ends = views.cameras[:, None] + ranges * profile_rays(views.profiles.shape[1])
+    ends = ends.reshape(-1, 2)
     ends = ends[np.isfinite(ends[:, 0])]
     if len(ends) == 0:
         return views.cameras.min(axis=0), views.cameras.max(axis=0)
@@ -201,22 +200,17 @@ def floor_beside(
         config: settings.
 
     Returns:
-        The largest piece next to the camera, None where there is none.
+        The piece nearest to the camera of those as large as a room, None where it is not next to
+        the camera: what else the view alone holds are slivers that its errors make, even far away.
     """
-    beside = (evidence.total > 0) & ~taken
-    at = np.floor(camera / config.cell_ch).astype(int) - evidence.first_cell
-    step = int(np.ceil(_DOORSTEP_CH / config.cell_ch))
-    near = tuple(slice(max(0, k - step), k + step + 1) for k in at)
-    pieces, _ = ndimage.label(_opened(beside, config))
-    touching = np.unique(pieces[near])
-    piece = main_piece(
-        beside & np.isin(pieces, touching[touching > 0]),
-        evidence.first_cell,
-        np.empty((0, 2)),
-        config,
-    )
-    if piece is None:
+    pieces, _ = ndimage.label(_opened((evidence.total > 0) & ~taken, config))
+    large = np.bincount(pieces.ravel()) * config.cell_ch**2 >= config.min_area_ch2
+    large[0] = False
+    cells = np.argwhere(large[pieces])
+    away = np.hypot(*((cells + evidence.first_cell + 0.5) * config.cell_ch - camera).T)
+    if away.min(initial=np.inf) > _DOORSTEP_CH:
         return None
+    piece = pieces == pieces[tuple(cells[away.argmin()])]
     return _floor(piece, evidence, np.where(taken, np.inf, 0.0), config)
 
 
