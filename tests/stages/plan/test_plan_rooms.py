@@ -151,8 +151,9 @@ def test_layouts_of_few_columns_show_the_same_room_as_surely(width):
         return room.shape
 
     few, usual = of(width), of(1024)
-    assert _iou(few.polygon, RECTANGLE) > 0.98
-    assert np.sort(few.sigmas) == pytest.approx(np.sort(usual.sigmas), rel=0.2)
+    assert _iou(few.polygon, RECTANGLE) > 0.999
+    # Between columns 6° apart corners may be cut; the walls themselves are as sure.
+    assert np.sort(few.sigmas)[:4] == pytest.approx(np.sort(usual.sigmas), rel=0.1)
 
 
 def test_no_floor_is_told():
