@@ -48,6 +48,7 @@ def test_the_paper_preset_has_what_the_paper_prints():
         ({"scale": {"steps": []}}, "tuple"),
         ({"seed": True}, "int"),
         ({"planes": {"max_residual_ch": float("nan")}}, "float"),
+        ({"adjust": {"odometry_multiples": [0.5, 0.5]}}, "increasing"),
         ({"misplaced": {"conflict_share": 0.2}}, "more than innocent_share = 0.2"),
     ],
 )

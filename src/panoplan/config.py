@@ -1031,6 +1031,12 @@ class AdjustConfig:
         high=1000.0,
     )
 
+    def __post_init__(self) -> None:
+        """Checks that the multiples increase."""
+        multiples = self.odometry_multiples
+        if any(b <= a for a, b in itertools.pairwise(multiples)):
+            raise ConfigError("adjust.odometry_multiples", repr(multiples), "increasing multiples")
+
 
 @dataclass(frozen=True)
 class PartitionConfig:

@@ -9,6 +9,7 @@ import numpy as np
 import shapely
 
 from panoplan.config import PartitionConfig
+from panoplan.geometry.hits import edge_directions
 from panoplan.geometry.polygons import signed_area
 from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.room import RoomShape
@@ -112,7 +113,7 @@ def _edges(shapes: Sequence[RoomShape]) -> _Edges:
     rooms: list[int] = []
     walls: list[int] = []
     starts: list[FloatArray] = []
-    ends: list[FloatArray] = []
+    sides: list[tuple[FloatArray, FloatArray]] = []
     sigmas: list[FloatArray] = []
     for index, shape in enumerate(shapes):
         if shape.polygon is None:
@@ -121,20 +122,19 @@ def _edges(shapes: Sequence[RoomShape]) -> _Edges:
         rooms += [index] * count
         walls += range(count)
         starts.append(shape.polygon)
-        ends.append(np.roll(shape.polygon, -1, axis=0))
+        sides.append(edge_directions(shape.polygon))
         sigmas.append(np.full(count, np.nan) if shape.sigmas is None else shape.sigmas)
     if not starts:
         none = np.empty((0, 2))
         return _Edges(
             np.empty(0, np.int64), np.empty(0, np.int64), none, none, np.empty(0), np.empty(0)
         )
-    start, end = np.concatenate(starts), np.concatenate(ends)
-    length = np.maximum(np.hypot(*(end - start).T), 1e-12)
+    along, length = (np.concatenate(part) for part in zip(*sides, strict=True))
     return _Edges(
         np.array(rooms),
         np.array(walls),
-        start,
-        (end - start) / length[:, None],
+        np.concatenate(starts),
+        along,
         length,
         np.concatenate(sigmas),
     )
@@ -220,8 +220,7 @@ def _moved(shape: RoomShape, shifts: FloatArray) -> RoomShape:
     if shape.polygon is None or not shifts.any():
         return shape
     ring = shape.polygon
-    along = np.roll(ring, -1, axis=0) - ring
-    along = along / np.maximum(np.hypot(*along.T), 1e-12)[:, None]
+    along, _ = edge_directions(ring)
     outward = np.stack([along[:, 1], -along[:, 0]], axis=-1)
     corners = np.empty_like(ring)
     for k in range(len(ring)):
