@@ -1,9 +1,13 @@
+from itertools import islice
+
 import numpy as np
 import pytest
 
 from panoplan.formats.image import read_panorama
 from panoplan.layouts.dense import Dense
 from panoplan.layouts.doubt import answer_doubt, image_doubt
+from panoplan.layouts.network.samples import samples
+from panoplan.layouts.onnx import SHIPPED, OnnxLayouts
 
 FLOOR = np.full(64, -0.6)
 
@@ -51,3 +55,34 @@ def test_answers_that_are_no_room_are_doubted(dense, told):
 def test_an_ordinary_answer_is_believed():
     ceiling = np.arctan(0.7 * np.tan(-FLOOR))
     assert answer_doubt(Dense(FLOOR, ceiling, np.full(64, 0.02), confidence=0.9)) is None
+
+
+@pytest.fixture(scope="module")
+def rendered():
+    """Panoramas of a home that the shipped network has not seen."""
+    return [sample.image for sample in islice(samples(10**7, 6), 6)]
+
+
+def _doubts(images):
+    network = OnnxLayouts(SHIPPED, threads=1)
+    return [image_doubt(image) or answer_doubt(network(image)) for image in images]
+
+
+def test_most_rendered_rooms_are_believed(rendered):
+    """Cameras near a wall or low above the floor may be doubted."""
+    assert _doubts(rendered).count(None) >= 4
+
+
+@pytest.mark.parametrize(
+    "spoilt",
+    [
+        lambda image: image[::-1, ::-1],
+        lambda image: np.full_like(image, 120),
+        lambda image: np.random.default_rng(0).normal(120, 30, image.shape).astype("u1"),
+        lambda image: perspective(np.kron(image, np.ones((2, 2, 1), np.uint8)), 1.0),
+    ],
+    ids=["upside down", "grey", "noise", "perspective"],
+)
+def test_no_room_is_told_of_what_shows_none_or_shows_it_wrongly(rendered, spoilt):
+    doubts = _doubts([np.ascontiguousarray(spoilt(image)) for image in rendered])
+    assert None not in doubts

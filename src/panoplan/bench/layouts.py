@@ -57,7 +57,8 @@ def measure(folder: Path, network: OnnxLayouts, progress: Progress) -> dict[str,
     Raises:
         InputError: the folder is not complete, or an image or layout cannot be read.
     """
-    views = _sequence(folder) if (folder / DESCRIPTION).exists() else _renders(folder)
+    is_scene = (folder / DESCRIPTION).exists()
+    views = _sequence(folder) if is_scene else _renders(folder)
     lines, columns, seconds = [], [], []
     for done, (name, image, truth) in enumerate(views, start=1):
         pixels = image()
@@ -74,7 +75,7 @@ def measure(folder: Path, network: OnnxLayouts, progress: Progress) -> dict[str,
         np.array([line[name] for line in lines], dtype=bool) for name in ("openings", "small")
     )
     return {
-        "scene": folder.name,
+        "scene": folder.name if is_scene else "held-out renders",
         "model": network.spec.name,
         "all": _summary(lines, np.ones(len(lines), dtype=bool)),
         "without_openings": _summary(lines, ~openings),

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 from functools import partial
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from panoplan.cli.progress import progress
@@ -28,6 +29,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         default=0.5,
         metavar="S",
         help="train: of the minutes with the ImageNet features as they are (0.5)",
+    )
+    parser.add_argument(
+        "--beside",
+        type=Path,
+        action="append",
+        default=[],
+        metavar="CHECKPOINT",
+        help="train: of an earlier run with --head-share 1, averaged with this one",
     )
     parser.add_argument("--seed", type=int, default=0, help="train: of the order (0)")
     parser.add_argument("--quiet", action="store_true", help="train: no progress")
@@ -65,7 +74,7 @@ def act(options: argparse.Namespace) -> int:
     for plan, part in ((head_plan, share), (tuned_plan, 1 - share)):
         if part > 0:
             train(options.input, options.input, plan(options.minutes * part, options.seed), say)
-    finish(options.input, options.input / CHECKPOINT, options.output, say)
+    finish(options.input, options.input / CHECKPOINT, options.output, say, beside=options.beside)
     print(options.output)
     return 0
 

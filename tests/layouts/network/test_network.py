@@ -8,13 +8,15 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="the extra train is not installed")
 
+from panoplan.errors import InputError  # noqa: E402
 from panoplan.layouts.network import calibration, confidence  # noqa: E402
 from panoplan.layouts.network import train as training  # noqa: E402
 from panoplan.layouts.network.calibration import KNOTS_CH, Widening  # noqa: E402
 from panoplan.layouts.network.confidence import spoilt  # noqa: E402
 from panoplan.layouts.network.data import batches  # noqa: E402
 from panoplan.layouts.network.export import export  # noqa: E402
-from panoplan.layouts.network.head import OUTPUTS, Head, LayoutNetwork  # noqa: E402
+from panoplan.layouts.network.finish import together  # noqa: E402
+from panoplan.layouts.network.head import OUTPUTS, Head, Heads, LayoutNetwork  # noqa: E402
 from panoplan.layouts.network.samples import TARGETS  # noqa: E402
 from panoplan.layouts.network.shards import HELD_OUT_SEED  # noqa: E402
 from panoplan.layouts.network.trunk import CHANNELS, Trunk, _Conv, _fold  # noqa: E402
@@ -124,7 +126,7 @@ def test_training_learns_and_goes_on(tmp_path, monkeypatch, network, trunk_rate)
     assert second < first - 0.05
     kept = training.load(out / training.CHECKPOINT)
     assert {"door_f1", "opening_f1", "window_f1"} <= json.loads(told[-1]).keys()
-    moved = not training._same(kept.trunk, network.trunk)
+    moved = not training.same(kept.trunk, network.trunk)
     assert moved == (trunk_rate > 0)
 
 
@@ -147,6 +149,41 @@ def test_the_exported_file_says_the_same_and_what_it_is(tmp_path, network):
     np.testing.assert_allclose(told.floor[known], answer[0][known], atol=0.05 * spread)
     sigma = 2 * np.sqrt(2) * np.exp(answer[3])
     np.testing.assert_allclose(told.sigma[known], sigma[known], rtol=0.3, atol=1e-3)
+
+
+class _Says(torch.nn.Module):
+    def __init__(self, place, scale, chance):
+        super().__init__()
+        self.rows = [place] * 3 + [float(np.log(scale))] * 3 + [chance] * 4
+
+    def forward(self, shallow, middle, deep):
+        return torch.tensor(self.rows)[None, :, None].expand(1, len(OUTPUTS), 8)
+
+
+def test_heads_are_averaged_by_how_sure_they_are():
+    """One says -0.4 ± 0.01, the other -0.7 ± 0.02: two thirds of the first, one of the other."""
+    answer = Heads([_Says(-0.4, 0.01, -9.0), _Says(-0.7, 0.02, 3.0)])(None, None, None)[0, :, 0]
+    assert answer[0].item() == pytest.approx(-0.5, rel=1e-5)
+    square = (0.01**2 + 0.02**2) / 2 + (0.1**2 + 0.2**2) / 2 / 2
+    assert answer[3].item() == pytest.approx(np.log(square) / 2, rel=1e-5)
+    assert answer[6:].tolist() == [3.0] * 4
+    alone = _Says(-0.4, 0.01, 2.0)
+    np.testing.assert_allclose(
+        Heads([alone, alone])(None, None, None), alone(None, None, None), rtol=1e-5
+    )
+
+
+def test_only_runs_with_the_same_trunk_answer_together(network):
+    other = copy.deepcopy(network)
+    both = together(network, [("run.pt", other)])
+    assert both.trunk is network.trunk
+    assert both.sure is network.sure
+    assert len(both.head.heads) == 2
+    assert together(network, []) is network
+    with torch.no_grad():
+        other.trunk.stem.conv.bias.add_(1.0)
+    with pytest.raises(InputError, match=r"run\.pt.*another trunk"):
+        together(network, [("run.pt", other)])
 
 
 def test_widening_is_linear_in_the_elevation_between_the_knots():

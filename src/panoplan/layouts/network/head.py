@@ -6,6 +6,7 @@ al., 2019); its recurrent layer is replaced by attention with a learned bias of 
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from itertools import pairwise
 
 import torch
@@ -137,6 +138,31 @@ class Head(nn.Module):
         return self.answer(wrapped(x, 1))
 
 
+class Heads(nn.Module):
+    """Several heads that answer as one.
+
+    Boundaries are averaged, each head's as it is sure of them; the scale tells how unsure the heads
+    are and how far they disagree. Corners and spans are the last head's.
+
+    Args:
+        heads: trained apart, on the same features.
+    """
+
+    def __init__(self, heads: Sequence[nn.Module]) -> None:
+        super().__init__()
+        self.heads = nn.ModuleList(heads)
+
+    def forward(self, shallow: Tensor, middle: Tensor, deep: Tensor) -> Tensor:
+        """(B, len(OUTPUTS), COLUMNS) from features at strides 8, 16 and 32."""
+        answers = [head(shallow, middle, deep) for head in self.heads]
+        places = torch.stack([answer[:, :BOUNDARIES] for answer in answers])
+        logs = torch.stack([answer[:, BOUNDARIES : 2 * BOUNDARIES] for answer in answers])
+        place = (places * torch.softmax(-logs, dim=0)).sum(dim=0)
+        # The variance of Laplace's distribution is twice the square of its scale.
+        square = torch.exp(2 * logs).mean(dim=0) + ((places - place) ** 2).mean(dim=0) / 2
+        return torch.cat([place, torch.log(square) / 2, answers[-1][:, 2 * BOUNDARIES :]], dim=1)
+
+
 def _spread(x: Tensor, factor: int) -> Tensor:
     """Columns repeated with linear transitions, around the circle."""
     if factor == 1:
@@ -153,10 +179,10 @@ class LayoutNetwork(nn.Module):
 
     Args:
         trunk: the feature extractor.
-        head: what reads its features.
+        head: what reads its features, one or several.
     """
 
-    def __init__(self, trunk: Trunk, head: Head) -> None:
+    def __init__(self, trunk: Trunk, head: Head | Heads) -> None:
         super().__init__()
         self.trunk, self.head = trunk, head
         self.sure = nn.Linear(CHANNELS[2] * _DEEP_ROWS, 1)

@@ -128,7 +128,7 @@ def load(path: Path) -> LayoutNetwork:
 
 def is_tuned(network: LayoutNetwork) -> bool:
     """Whether the trunk is no longer ImageNet's."""
-    return not _same(network.trunk, pretrained())
+    return not same(network.trunk, pretrained())
 
 
 def loss_of(answer: Tensor, targets: Tensor) -> Tensor:
@@ -258,7 +258,8 @@ def _follow(mean: LayoutNetwork, network: LayoutNetwork, decay: float) -> None:
             a.lerp_(b, 1 - decay)
 
 
-def _same(one: nn.Module, other: nn.Module) -> bool:
+def same(one: nn.Module, other: nn.Module) -> bool:
+    """Whether two modules of one kind have the same weights."""
     pairs = zip(one.parameters(), other.parameters(), strict=True)
     return all(torch.equal(a, b) for a, b in pairs)
 
