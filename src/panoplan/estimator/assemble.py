@@ -255,6 +255,7 @@ def _room(
     ring = to_plan(np.roll(shape.polygon, -first, axis=0))
     sigmas: list[float | None] = [None] * len(ring)
     length_sigmas = sigmas
+    area_sigma = None
     if shape.sigmas is not None:
         placed = _place_sigmas(
             shape.polygon, cameras, ch_per_su, scale_sigma, config.adjust.sigma_factor
@@ -263,6 +264,7 @@ def _room(
         sigmas = _told(length * np.roll(across, -first))
         own = _length_sigmas(shape, across, len(cameras), config)
         length_sigmas = _told(length * np.roll(own, -first))
+        area_sigma = length**2 * _area_sigma(shape, across, len(cameras), scale_sigma, config)
     walls = tuple(
         Wall(
             f"wall_{walls_before + k + 1:02d}",
@@ -274,9 +276,6 @@ def _room(
         for k in range(len(ring))
     )
     holes = tuple(to_plan(hole) for hole in shape.holes)
-    area_sigma = None
-    if shape.sigmas is not None:
-        area_sigma = length**2 * _area_sigma(shape, len(cameras), scale_sigma, config)
     return replace(made, polygon=ring, walls=walls, holes=holes, area_sigma=area_sigma)
 
 
@@ -317,16 +316,19 @@ def _size_sigma(views: int, config: Config) -> float:
     return config.registration.scale_bias / float(np.sqrt(1 + _TOLD * max(0, views - 1)))
 
 
-def _area_sigma(shape: RoomShape, views: int, scale_sigma: float, config: Config) -> float:
+def _area_sigma(
+    shape: RoomShape, across: FloatArray, views: int, scale_sigma: float, config: Config
+) -> float:
     """Standard deviation of a room's area in square camera heights.
 
-    Of its walls, each by itself; and of its size, which all views err in together by the scale,
-    and each by its own factor. Where the room lies does not matter.
+    Of its walls, as those of their lengths; and of its size, which all views err in together by the
+    scale, and each by its own factor. Where the room lies does not matter.
     """
     assert shape.polygon is not None
     assert shape.sigmas is not None
     _, length = edge_directions(shape.polygon)
-    sigmas = np.where(np.isnan(shape.sigmas), config.partition.unfitted_sigma_ch, shape.sigmas)
+    within = np.hypot(shape.sigmas, _WITHIN * across)
+    sigmas = np.where(np.isnan(within), config.partition.unfitted_sigma_ch, within)
     own = _size_sigma(views, config)
     size = 2 * abs(signed_area(shape.polygon)) * np.hypot(scale_sigma, own)
     return float(np.sqrt(((length * sigmas) ** 2).sum() + size**2))
