@@ -67,7 +67,18 @@ def test_a_root_that_is_another_dataset_is_told(tmp_path, capsys):
 
 
 @pytest.mark.parametrize(
-    "words", [["--seeds", "9-3"], ["--seeds", "a"], ["--seeds", "1-x"], ["--methods", "best"]]
+    "words",
+    [
+        ["--seeds", "9-3"],
+        ["--seeds", "a"],
+        ["--seeds", "1-x"],
+        ["--seeds", "1-²"],
+        ["--methods", "best"],
+        ["--jobs", "0"],
+        ["--jobs", "many"],
+        ["--flats", "0"],
+        ["--trials", "-1"],
+    ],
 )
 def test_words_that_do_not_parse(words, capsys):
     with pytest.raises(SystemExit) as stop:

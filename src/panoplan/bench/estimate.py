@@ -10,15 +10,13 @@ from panoplan.datasets.detect import open_scene
 from panoplan.datasets.scene import Scene
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
+from panoplan.formats.sequence import TRUE_TRAJECTORY
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.plan import FloorPlan
 
-TRUE_POSES = "trajectory_gt.tum"
-"""The file of true poses in a scene's folder."""
-
 
 def estimate(keyframes: Sequence[Keyframe], config: Config, walk: Walk) -> FloorPlan:
-    """The plan at the end of a walk."""
+    """The plan at the end of a walk, as it is when all that can still change it is done."""
     estimator = FloorPlanEstimator(config, walk)
     for keyframe in keyframes:
         estimator.update(keyframe)
@@ -32,7 +30,7 @@ def true_poses(folder: Path) -> Scene:
     Raises:
         InputError: the folder is not complete.
     """
-    return open_scene(folder, trajectory=folder / TRUE_POSES)
+    return open_scene(folder, trajectory=folder / TRUE_TRAJECTORY)
 
 
 def metric_plan(scene: Scene, config: Config) -> FloorPlan:

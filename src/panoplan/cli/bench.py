@@ -4,13 +4,21 @@ from __future__ import annotations
 
 import argparse
 import json
+import re
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from panoplan.cli import bench_v1, settings
 from panoplan.cli.progress import progress
 from panoplan.errors import InputError
 from panoplan.formats.atomic import write_text
+from panoplan.formats.sequence import TRUE_TRAJECTORY
+
+if TYPE_CHECKING:
+    from panoplan.config import Config
+    from panoplan.pipeline import Progress
 
 
 def add_parser(commands: Any) -> None:
@@ -46,11 +54,15 @@ def add_parser(commands: Any) -> None:
     parser.add_argument(
         "--model", type=Path, metavar="ONNX", help="layouts: network (default: the one shipped)"
     )
-    parser.add_argument("--flats", type=int, default=20, metavar="N", help="seeds 0 to N-1 a grade")
-    parser.add_argument("--trials", type=int, default=40, metavar="N", help="misplaced: how many")
+    parser.add_argument(
+        "--flats", type=_count, default=20, metavar="N", help="seeds 0 to N-1 a grade"
+    )
+    parser.add_argument(
+        "--trials", type=_count, default=40, metavar="N", help="misplaced: how many"
+    )
     parser.add_argument(
         "--draws",
-        type=int,
+        type=partial(_count, least=0),
         default=0,
         metavar="N",
         help="tour: so often three quarters of the photos are drawn and joined, too",
@@ -58,7 +70,7 @@ def add_parser(commands: Any) -> None:
     parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
     parser.add_argument(
         "--jobs",
-        type=_jobs,
+        type=_count,
         default=1,
         metavar="N",
         help="v1, accuracy, metric, difficulty: processes",
@@ -82,6 +94,34 @@ def act(options: argparse.Namespace) -> int:
         return bench_v1.act(options)
     if options.what is None:
         raise InputError("bench", "nothing to measure", "bench v1, bench accuracy … (see --help)")
+    asked = ("home", "difficulty", "odometry", "tour", "layouts", "exports", "model", "table")
+    if options.what in asked and options.input is None:
+        raise InputError(f"bench {options.what}", "no path", f"bench {options.what} PATH")
+    if options.what == "table":
+        from panoplan.bench.table import update
+
+        changed = update(options.input, options.results)
+        print(f"{options.input}: {'changed' if changed else 'as it was'}")
+        return 0
+    if options.output is not None and not options.output.parent.is_dir():
+        raise InputError(options.output, "no folder for it", "a file in a folder that exists")
+    from panoplan.bench.record import record
+    from panoplan.config import as_dict
+
+    config = settings.resolve(options)
+    with progress(options.what, quiet=options.quiet) as report:
+        figures = _measured(options, config, report)
+    text = json.dumps(record(options.what, as_dict(config), figures), indent=1) + "\n"
+    if options.output is None:
+        print(text, end="")
+    else:
+        write_text(options.output, text)
+        print(options.output)
+    return 0
+
+
+def _measured(options: argparse.Namespace, config: Config, report: Progress) -> Any:
+    """The figures of what is to be measured."""
     from panoplan.bench import (
         accuracy,
         difficulty,
@@ -93,66 +133,38 @@ def act(options: argparse.Namespace) -> int:
         model,
         odometry,
         runtime,
-        table,
         tour,
     )
-    from panoplan.bench.record import record
-    from panoplan.config import as_dict
     from panoplan.layouts.onnx import SHIPPED, OnnxLayouts
 
-    asked = ("home", "difficulty", "odometry", "tour", "layouts", "exports", "model", "table")
-    if options.what in asked and options.input is None:
-        raise InputError(f"bench {options.what}", "no path", f"bench {options.what} PATH")
-    if options.what == "table":
-        changed = table.update(options.input, options.results)
-        print(f"{options.input}: {'changed' if changed else 'as it was'}")
-        return 0
-    config = settings.resolve(options)
-    with progress(options.what, quiet=options.quiet) as report:
-        if options.what == "accuracy":
-            seeds = range(max(1, options.flats))
-            figures: Any = accuracy.measure(
-                seeds, config, report, metric=options.metric, jobs=options.jobs
-            )
-        elif options.what == "metric":
-            seeds = range(max(1, options.flats))
-            figures = metric.measure(seeds, config, report, jobs=options.jobs)
-        elif options.what == "home":
-            figures = home.measure(options.input, config)
-        elif options.what == "misplaced":
-            trials = max(1, options.trials)
-            if options.input is None:
-                figures = misplaced.measure_flats(range(trials), config, report)
-            else:
-                figures = misplaced.measure_home(options.input, config, trials, report)
-        elif options.what == "layouts":
-            network = OnnxLayouts(options.model or SHIPPED, threads=1)
-            figures = layouts.measure(options.input, network, report)
-        elif options.what == "exports":
-            figures = exports.measure(options.input, config, report)
-        elif options.what == "model":
-            figures = model.measure(options.input, config, report, options.pictures)
-        elif options.what == "tour":
-            figures = tour.measure(_scenes(options.input), config, options.draws, report)
-        elif options.what == "odometry":
-            figures = odometry.measure(_scenes(options.input), report)
-        elif options.what == "difficulty":
-            figures = difficulty.measure(options.input, config, report, jobs=options.jobs)
-        else:
-            figures = runtime.measure(config, report)
-    text = json.dumps(record(options.what, as_dict(config), figures), indent=1) + "\n"
-    if options.output is None:
-        print(text, end="")
-    else:
-        write_text(options.output, text)
-        print(options.output)
-    return 0
+    place, jobs, trials = options.input, options.jobs, options.trials
+    flats = range(options.flats)
+    measures: dict[str, Callable[[], Any]] = {
+        "accuracy": lambda: accuracy.measure(
+            flats, config, report, metric=options.metric, jobs=jobs
+        ),
+        "metric": lambda: metric.measure(flats, config, report, jobs=jobs),
+        "home": lambda: home.measure(place, config),
+        "misplaced": lambda: (
+            misplaced.measure_flats(range(trials), config, report)
+            if place is None
+            else misplaced.measure_home(place, config, trials, report)
+        ),
+        "difficulty": lambda: difficulty.measure(place, config, report, jobs=jobs),
+        "runtime": lambda: runtime.measure(config, report),
+        "odometry": lambda: odometry.measure(_scenes(place), report),
+        "tour": lambda: tour.measure(_scenes(place), config, options.draws, report),
+        "layouts": lambda: layouts.measure(
+            place, OnnxLayouts(options.model or SHIPPED, threads=1), report
+        ),
+        "exports": lambda: exports.measure(place, config, report),
+        "model": lambda: model.measure(place, config, report, options.pictures),
+    }
+    return measures[options.what]()
 
 
 def _scenes(path: Path) -> list[Path]:
     """The scene with true poses, or the scenes in a folder."""
-    from panoplan.formats.sequence import TRUE_TRAJECTORY
-
     if not path.is_dir():
         raise InputError(path, "no folder", "a scene with known truth, or a folder of them")
     if (path / TRUE_TRAJECTORY).exists():
@@ -163,8 +175,7 @@ def _scenes(path: Path) -> list[Path]:
     return scenes
 
 
-def _jobs(text: str) -> int:
-    value = int(text)
-    if not 1 <= value <= 1024:
-        raise argparse.ArgumentTypeError(f"found {text}; expected 1 to 1024 processes")
-    return value
+def _count(text: str, least: int = 1) -> int:
+    if not (re.fullmatch("[0-9]{1,4}", text) and int(text) >= least):
+        raise argparse.ArgumentTypeError(f"found {text!r}; expected {least} to 9999")
+    return int(text)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import re
 import time
 from collections.abc import Sequence
 from pathlib import Path
@@ -52,7 +53,10 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         "--ray", metavar="ADDRESS", help="works on a Ray cluster instead of --jobs processes"
     )
     group.add_argument(
-        "--pictures", type=Path, metavar="DIR", help="draws the best, median and worst scene"
+        "--pictures",
+        type=Path,
+        metavar="DIR",
+        help="draws the best, median and worst scene; model: photos and renderings",
     )
 
 
@@ -144,17 +148,17 @@ def _simulated(options: argparse.Namespace, seeds: Sequence[int]) -> dict[str, l
 
 
 def _seeds(text: str) -> range:
-    first, dash, last = text.partition("-")
-    if not (first.isascii() and first.isdigit() and (not dash or last.isdigit())):
+    told = re.fullmatch("([0-9]{1,9})(?:-([0-9]{1,9}))?", text)
+    if told is None:
         raise argparse.ArgumentTypeError(f"found {text!r}; expected a seed or A-B")
-    seeds = range(int(first), int(last or first) + 1)
+    seeds = range(int(told[1]), int(told[2] or told[1]) + 1)
     if not 0 < len(seeds) <= 10_000:
         raise argparse.ArgumentTypeError(f"found {text!r}; expected 1 to 10000 seeds")
     return seeds
 
 
 def _methods(text: str) -> tuple[str, ...]:
-    methods = tuple(text.split(","))
+    methods = tuple(dict.fromkeys(text.split(",")))
     unknown = [name for name in methods if name not in _METHODS]
     if unknown:
         wanted = ", ".join(_METHODS)
