@@ -57,7 +57,13 @@ def test_figures_bands_and_tables(tour, monkeypatch):
         inside = low <= of["real"]["mean_iou"] <= high
         assert of["within"]["mean_iou"] == inside
         assert 0.6 < of["real"]["mean_iou"] < 1
-    files = [{"benchmark": "difficulty", "figures": json.loads(json.dumps(result))}]
+    files = [
+        {
+            "benchmark": "difficulty",
+            "settings": {"preset": "default"},
+            "figures": json.loads(json.dumps(result)),
+        }
+    ]
     assert "| mean IoU, with |" in difficulty_tables.figures(files)
     told = difficulty_tables.errors(files)
     assert "| gross on openings | 31.0% |" in told

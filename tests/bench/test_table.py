@@ -71,11 +71,39 @@ def test_pages_that_cannot_be_filled(page, text, told):
         update(page, page.parent / "results")
 
 
-def test_a_file_that_is_no_benchmark(page):
-    (page.parent / "results" / "a.json").write_text("{}")
+@pytest.mark.parametrize("settings", [None, {"preset": "best"}])
+def test_a_file_that_is_no_benchmark(settings, page):
+    if settings is None:
+        (page.parent / "results" / "a.json").write_text("{}")
+    else:
+        _file(page.parent / "results", "a.json", settings=settings)
     with pytest.raises(InputError, match="no benchmark file"):
         update(page, page.parent / "results")
     assert page.read_text() == PAGE
+
+
+def test_a_source_of_metres_that_no_flat_had_is_no_row(page):
+    length = {
+        "flats": 3,
+        "size_error_percent_median": 0.11,
+        "size_sigma_percent_median": 0.51,
+        "size_within_1_sigma": 1.0,
+        "size_within_2_sigma": 1.0,
+        "lengths_within_1_sigma": None,
+        "lengths_within_2_sigma": None,
+        "length_error_percent_median": 0.24,
+        "length_error_percent_median_from_1_m": None,
+    }
+    none = {name: {"flats": 0} for name in ("length", "door height")}
+    figures = {
+        "mild": {"summary": {**none, "length": length}},
+        "hard": {"summary": none},
+    }
+    _file(page.parent / "results", "a.json", benchmark="metric", figures=figures)
+    page.write_text(PAGE.replace("runtime", "metric"))
+    assert update(page, page.parent / "results")
+    rows = [line for line in page.read_text().splitlines() if line.startswith("| ")][2:]
+    assert rows == ["| length, mild | 3 | 0.11 % | 0.51 % | 1.00 / 1.00 | 0.24 % | – | – |"]
 
 
 def test_exports_areas_and_models_are_told(page):

@@ -7,6 +7,7 @@ from typing import Any
 
 from panoplan.bench.difficulty import JUDGED
 from panoplan.bench.markdown import table
+from panoplan.bench.record import of_benchmark
 from panoplan.simulate.noise import MEASURED
 
 _LABELS = {
@@ -28,7 +29,7 @@ def figures(files: list[dict[str, Any]]) -> str:
         files: benchmark files.
     """
     rows = []
-    for data in _of(files):
+    for data in _figures(files):
         for key, told in (("stated", "with"), ("unstated", "without")):
             of = data[key]
             for name, label in _LABELS.items():
@@ -47,7 +48,7 @@ def errors(files: list[dict[str, Any]]) -> str:
     Args:
         files: benchmark files.
     """
-    found = _of(files)
+    found = _figures(files)
     if not found:
         return ""
     first = found[0]
@@ -57,8 +58,8 @@ def errors(files: list[dict[str, Any]]) -> str:
     return table(heads, [[label, *map(told, columns)] for label, told in _rows()])
 
 
-def _of(files: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    return [data["figures"] for data in files if data["benchmark"] == "difficulty"]
+def _figures(files: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    return [data["figures"] for data in of_benchmark(files, "difficulty")]
 
 
 def _rows() -> list[tuple[str, Callable[[_Errors], str]]]:

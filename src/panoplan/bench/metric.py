@@ -202,8 +202,10 @@ def _summary(rows: Sequence[dict[str, Any]]) -> dict[str, Any]:
         "size_sigma_percent_median": float(np.median(sigmas)),
         "size_within_1_sigma": float(np.mean(np.abs(sizes) <= sigmas)),
         "size_within_2_sigma": float(np.mean(np.abs(sizes) <= 2 * sigmas)),
-        "lengths_within_1_sigma": float(np.mean(stated <= 1)),
-        "lengths_within_2_sigma": float(np.mean(stated <= 2)),
+        "lengths_within_1_sigma": float(np.mean(stated <= 1)) if len(stated) else None,
+        "lengths_within_2_sigma": float(np.mean(stated <= 2)) if len(stated) else None,
         "length_error_percent_median": float(np.median(errors)),
-        "length_error_percent_median_from_1_m": float(np.median(errors[long])),
+        "length_error_percent_median_from_1_m": (
+            float(np.median(errors[long])) if long.any() else None
+        ),
     }

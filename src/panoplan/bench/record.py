@@ -11,8 +11,8 @@ from typing import Any
 
 from panoplan import __version__
 
-PRESETS = ("paper", "released", "sound", "default")
-"""In the order of tables."""
+METHODS = ("points", "paper", "released", "sound", "default")
+"""In the order of tables: the baseline from a scan, and the presets."""
 
 
 def record(name: str, settings: Mapping[str, Any], figures: Any) -> dict[str, Any]:
@@ -41,7 +41,7 @@ def record(name: str, settings: Mapping[str, Any], figures: Any) -> dict[str, An
 def of_benchmark(records: Sequence[dict[str, Any]], name: str) -> list[dict[str, Any]]:
     """The records of one benchmark, in the order of their presets."""
     chosen = [data for data in records if data["benchmark"] == name]
-    return sorted(chosen, key=lambda data: PRESETS.index(data["settings"]["preset"]))
+    return sorted(chosen, key=lambda data: METHODS.index(data["settings"]["preset"]))
 
 
 def _commit() -> str | None:

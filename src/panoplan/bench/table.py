@@ -9,7 +9,7 @@ from typing import Any
 
 from panoplan.bench import difficulty_tables, export_tables, pose_tables
 from panoplan.bench.markdown import number, pair, table
-from panoplan.bench.record import of_benchmark
+from panoplan.bench.record import METHODS, of_benchmark
 from panoplan.bench.v1 import tables as v1
 from panoplan.errors import InputError
 from panoplan.formats.atomic import read_bytes, write_text
@@ -104,7 +104,8 @@ def updated(text: str, folder: Path, page: Path) -> str:
 def _read(path: Path) -> dict[str, Any]:
     try:
         data = json.loads(read_bytes(path, _LIMIT))
-        _ = data["benchmark"], data["figures"], data["settings"]["preset"], data["commit"]
+        METHODS.index(data["settings"]["preset"])
+        _ = data["benchmark"], data["figures"], data["commit"]
     except (ValueError, KeyError, TypeError):
         raise InputError(path, "no benchmark file", "what panoplan bench writes") from None
     return dict(data)
@@ -185,6 +186,8 @@ def _metric(files: list[dict[str, Any]]) -> str:
     for data in of_benchmark(files, "metric"):
         for grade in ("mild", "hard"):
             for source, s in data["figures"][grade]["summary"].items():
+                if not s["flats"]:
+                    continue
                 rows.append(
                     [
                         f"{source}, {grade}",

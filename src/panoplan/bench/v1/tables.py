@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from panoplan.bench.markdown import number, pair, table
+from panoplan.bench.record import METHODS
 from panoplan.bench.v1.differences import Difference, difference
 from panoplan.bench.v1.published import TABLE_I, TABLE_II, TABLE_III
 from panoplan.bench.v1.score import column
@@ -18,7 +19,6 @@ _NAMES = {
     "flat": "Flats of a real size",
     "dataset": "MP3D-FPE",
 }
-_METHODS = ("points", "paper", "released", "sound", "default")
 _COMPARED = {
     "rooms .5 R": "rooms_50 recall",
     "rooms .5 P": "rooms_50 precision",
@@ -288,7 +288,7 @@ def _by_family(files: Files) -> dict[str, dict[str, _Shares]]:
             if data["benchmark"] == "v1" and data["figures"]["scenes_of"] == scenes_of
         }
         if own:
-            found[scenes_of] = {name: own[name] for name in _METHODS if name in own}
+            found[scenes_of] = {name: own[name] for name in METHODS if name in own}
     return found
 
 
