@@ -8,18 +8,17 @@ from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
+from panoplan.bench.estimate import estimate
 from panoplan.bench.points.baseline import PointsConfig, plan_from_points
 from panoplan.bench.v1.scenes import Recording, Source, code_version, digest
-from panoplan.config import PRESETS, Config, as_dict, override, preset
+from panoplan.config import Config, as_dict, override, preset
 from panoplan.errors import InputError, PanoplanError
-from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.geometry.rigid import heading_of
 from panoplan.types.plan import FloorPlan, PlanPose
 
 POINTS = "points"
 """The baseline from a scan; it needs no scale."""
-METHODS = (POINTS, *PRESETS)
 SHARES = (0.2, 1.0)
 """Share of the keyframes that the scale is recovered from. Source: Table II of the paper."""
 
@@ -32,7 +31,7 @@ class Row:
     """A row of Table II.
 
     Attributes:
-        method: of `METHODS`.
+        method: `POINTS` or a preset.
         share: of the keyframes that the scale is recovered from, in (0, 1].
     """
 
@@ -127,15 +126,7 @@ def made_of(recording: Recording, config: Config) -> Prediction:
         benchmark.
     """
     walk = Walk(recording.trajectory_unit, recording.camera_height_m, len(recording.keyframes))
-
-    def plan() -> FloorPlan:
-        estimator = FloorPlanEstimator(config, walk)
-        for keyframe in recording.keyframes:
-            estimator.update(keyframe)
-        estimator.finish()
-        return estimator.plan()
-
-    return _timed(plan)
+    return _timed(lambda: estimate(recording.keyframes, config, walk))
 
 
 def made_of_points(source: Source) -> Prediction:
