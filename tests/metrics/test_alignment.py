@@ -10,7 +10,6 @@ from panoplan.metrics.alignment import (
     align,
     common_cameras,
     fit,
-    metric_by_camera_height,
     transformed,
 )
 
@@ -79,17 +78,6 @@ def test_a_plan_in_camera_heights_is_made_metric_by_the_true_height():
         assert found.residual_rmse_m == pytest.approx(0.0, abs=1e-9)
     with pytest.raises(InputError, match="no camera height"):
         align(small, truth(camera_height_m=None), "none")
-
-
-def test_metric_by_camera_height():
-    small = plan(tuple(p / 1.5 for p in FLAT), CAMERAS / 1.5, unit="ch")
-    metric = metric_by_camera_height(small, 1.5)
-    assert (metric.unit, metric.camera_height_m) == ("m", 1.5)
-    assert metric.rooms[0].polygon == pytest.approx(FLAT[0])
-    assert metric.rooms[0].ceiling_height == pytest.approx(2.5 * 1.5)
-    assert metric_by_camera_height(metric, 2.0) is metric
-    with pytest.raises(InputError, match="positive"):
-        metric_by_camera_height(small, 0.0)
 
 
 def test_everything_of_a_plan_moves():

@@ -99,24 +99,6 @@ def metres_per_unit(plan: FloorPlan, true_camera_height_m: float | None = None) 
     return plan.camera_height_m or true_camera_height_m
 
 
-def metric_by_camera_height(plan: FloorPlan, camera_height_m: float) -> FloorPlan:
-    """A plan in camera heights made metric; a metric plan is returned as it is.
-
-    Args:
-        plan: the plan.
-        camera_height_m: metres a camera height, positive.
-
-    Raises:
-        InputError: the height is not positive.
-    """
-    if plan.unit == "m":
-        return plan
-    if not camera_height_m > 0:
-        raise InputError("camera height", f"{camera_height_m}", "a positive number of metres")
-    moved = transformed(plan, Similarity(camera_height_m))
-    return replace(moved, camera_height_m=camera_height_m)
-
-
 def fit(plan_points: FloatArray, true_points: FloatArray, freedom: Freedom) -> Similarity:
     """Least squares transform of points onto points, without reflection.
 
