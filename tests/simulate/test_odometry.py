@@ -1,7 +1,8 @@
 import numpy as np
 import pytest
 
-from panoplan.simulate.buildings import make_flat, rectangle, single_room
+from panoplan.simulate.buildings import rectangle, single_room
+from panoplan.simulate.flats import make_flat
 from panoplan.simulate.odometry import (
     MEASURED_ODOMETRY,
     MEASURED_TOUR,

@@ -5,8 +5,8 @@ import pytest
 import shapely
 from scipy.spatial import cKDTree
 
-from panoplan.simulate.buildings import make_flat
 from panoplan.simulate.families import simulate_scene
+from panoplan.simulate.flats import make_flat
 from panoplan.simulate.scan import scanned
 
 

@@ -12,10 +12,10 @@ from panoplan.simulate.buildings import (
     Passage,
     Window,
     l_shape,
-    make_flat,
     rectangle,
     single_room,
 )
+from panoplan.simulate.flats import make_flat
 from panoplan.simulate.views import Surface, ViewCaster, tilted
 from panoplan.simulate.walks import about_y, walk
 

@@ -6,14 +6,8 @@ import shapely
 
 from panoplan.errors import InputError
 from panoplan.geometry.rigid import heading_of
-from panoplan.simulate.buildings import (
-    Building,
-    InteriorRoom,
-    building_from_rooms,
-    make_corridor_building,
-    make_flat,
-    rectangle,
-)
+from panoplan.simulate.buildings import Building, InteriorRoom, rectangle
+from panoplan.simulate.flats import building_from_rooms, make_corridor_building, make_flat
 from panoplan.simulate.walks import locate, stills, walk
 
 SEEDS = range(25)

@@ -14,7 +14,7 @@ import numpy as np
 from panoplan.config import Config
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
-from panoplan.simulate.buildings import make_corridor_building
+from panoplan.simulate.flats import make_corridor_building
 from panoplan.simulate.scene import simulate
 from panoplan.types.events import KeyframeWaiting, RoomShaped, ScaleFrozen
 from panoplan.types.keyframe import Keyframe

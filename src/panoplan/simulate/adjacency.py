@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -77,6 +77,18 @@ def shared_walls(
                     (i, j), polygons[i], polygons[j], max_thickness, min_length, max_turn
                 )
     return found
+
+
+def longest_walls(walls: Iterable[SharedWall]) -> list[SharedWall]:
+    """The longest stretch of each pair of rooms, in the order of their first ones.
+
+    Args:
+        walls: as of `shared_walls`.
+    """
+    longest: dict[tuple[int, int], SharedWall] = {}
+    for wall in walls:
+        longest[wall.rooms] = max(wall, longest.get(wall.rooms, wall), key=lambda w: w.length)
+    return list(longest.values())
 
 
 def _between(

@@ -9,8 +9,7 @@ import shapely
 
 from panoplan.errors import InputError
 from panoplan.geometry.polygons import counter_clockwise
-from panoplan.simulate.adjacency import shared_walls
-from panoplan.simulate.buildings import BlindDoor, Building, InteriorRoom, outer_windows
+from panoplan.simulate.buildings import BlindDoor, Building, InteriorRoom
 from panoplan.simulate.features import (
     Draft,
     alcove_closet,
@@ -24,9 +23,16 @@ from panoplan.simulate.features import (
     pillar,
 )
 from panoplan.simulate.joining import SERVANT, SHARED, WAYS, Joinery, join
-from panoplan.simulate.partition import clip, cut
+from panoplan.simulate.partition import (
+    clip,
+    cut,
+    upright_cut,
+    wall_thickness,
+    without_straight_corners,
+)
 from panoplan.simulate.storeys import stack
 from panoplan.simulate.walks import can_be_walked
+from panoplan.simulate.windows import outer_windows
 from panoplan.simulate.wings import Shape, Wing, make_wings
 from panoplan.types.arrays import FloatArray
 
@@ -235,7 +241,7 @@ def _wing_rooms(
         share = float(np.clip(rng.uniform(1.2, 2.4) / count, 0.12, 0.4))
         at_low = bool(rng.random() < 0.5)
         x = low[0] + (high[0] - low[0]) * (share if at_low else 1 - share)
-        pieces = _upright_cut(outline, x, _slant(skewed, 12, rng), rng)
+        pieces = upright_cut(outline, x, _slant(skewed, 12, rng), rng)
         end, outline = pieces if at_low else pieces[::-1]
         ends, weights = [Draft("room", end)], weights[1:]
     rooms = _double_loaded(outline, wide, weights[1:], skewed, rng)
@@ -259,7 +265,7 @@ def _with_gallery(
 ) -> list[Draft] | None:
     """A corridor along one long side, rooms along the other."""
     low, high = outline.min(axis=0), outline.max(axis=0)
-    thick = _thickness(rng)
+    thick = wall_thickness(rng)
     z = high[1] - wide - thick / 2 if side == "high" else low[1] + wide + thick / 2
     upper, lower = cut(outline, np.array([low[0], z]), np.array([1.0, 0.0]), thick)
     corridor, band = (upper, lower) if side == "high" else (lower, upper)
@@ -281,7 +287,7 @@ def _double_loaded(
     tilt = _slant(skewed, 4, rng)
     along, up = np.array([np.cos(tilt), np.sin(tilt)]), np.array([-np.sin(tilt), np.cos(tilt)])
     middle = np.array([(low[0] + high[0]) / 2, z])
-    above, below = _thickness(rng), _thickness(rng)
+    above, below = wall_thickness(rng), wall_thickness(rng)
     corridor = clip(outline, up, float(up @ middle) + wide / 2)
     corridor = clip(corridor, -up, -float(up @ middle) + wide / 2)
     upper = cut(outline, middle + up * (wide + above) / 2, along, above)[0]
@@ -334,24 +340,18 @@ def _branch(
     if high - low < width + 2 * 2.6:
         return None
     x = rng.uniform(low + 2.6, high - 2.6 - width)
-    at_low, rest = _upright_cut(band, x, 0.0, rng)
-    _, through_rest = _upright_cut(through, x, 0.0, rng)
+    at_low, rest = upright_cut(band, x, 0.0, rng)
+    _, through_rest = upright_cut(through, x, 0.0, rng)
     start = float(rest[:, 0].min())
     branch = clip(through_rest, np.array([1.0, 0.0]), start + width)
     branch = clip(branch, np.array([-1.0, 0.0]), -start)
-    thick = _thickness(rng)
+    thick = wall_thickness(rng)
     at_high = clip(band, np.array([-1.0, 0.0]), -(start + width + thick))
     whole = shapely.union(shapely.Polygon(corridor), shapely.Polygon(branch))
     if not isinstance(whole, shapely.Polygon) or min(len(at_low), len(at_high)) < 3:
         return None
     ring = counter_clockwise(np.asarray(whole.simplify(1e-6).exterior.coords)[:-1])
-    return _without_straight_corners(ring), [at_low, at_high]
-
-
-def _without_straight_corners(ring: FloatArray) -> FloatArray:
-    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
-    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
-    return np.asarray(ring[np.abs(cross) > 1e-6 * np.hypot(*before.T) * np.hypot(*after.T)])
+    return without_straight_corners(ring), [at_low, at_high]
 
 
 def _divided(
@@ -383,29 +383,17 @@ def _divided(
     low, high = area.min(axis=0), area.max(axis=0)
     width, depth = high - low
     if width > upright * depth * rng.uniform(0.85, 1.2):
-        first, second = _upright_cut(area, low[0] + share * width, _slant(skewed, 12, rng), rng)
+        first, second = upright_cut(area, low[0] + share * width, _slant(skewed, 12, rng), rng)
     else:
         tilt = _slant(skewed, 8, rng)
         point = np.array([(low[0] + high[0]) / 2, low[1] + share * depth])
         along = np.array([np.cos(tilt), np.sin(tilt)])
-        second, first = cut(area, point, along, _thickness(rng))
+        second, first = cut(area, point, along, wall_thickness(rng))
     parts = [
         _divided(first, weights[:k], upright, skewed, rng),
         _divided(second, weights[k:], upright, skewed, rng),
     ]
     return None if parts[0] is None or parts[1] is None else parts[0] + parts[1]
-
-
-def _upright_cut(
-    area: FloatArray, x: float, slant: float, rng: np.random.Generator
-) -> tuple[FloatArray, FloatArray]:
-    """A wall across x: what lies at lower x, and at higher x."""
-    middle = np.array([x, (area[:, 1].min() + area[:, 1].max()) / 2])
-    return cut(area, middle, np.array([np.sin(slant), np.cos(slant)]), _thickness(rng))
-
-
-def _thickness(rng: np.random.Generator) -> float:
-    return float(rng.uniform(0.08, 0.25))
 
 
 def _slant(skewed: bool, most_deg: float, rng: np.random.Generator) -> float:
@@ -423,7 +411,7 @@ def _add_closet(style: Style, drafts: list[Draft], rng: np.random.Generator) -> 
         if floors.sum() == 0:
             return False
         k = int(rng.choice(len(drafts), p=floors / floors.sum()))
-        sizes, wall = rng.uniform(small, large, 2), _thickness(rng)
+        sizes, wall = rng.uniform(small, large, 2), wall_thickness(rng)
         if rng.random() < 0.75:
             corners = convex_corners(drafts[k].polygon)
             if not corners:
@@ -548,9 +536,8 @@ def _joined(name: str, style: Style, drafts: list[Draft], rng: np.random.Generat
         for label, draft in zip(_labels(drafts, rng), drafts, strict=True)
     )
     passages = join(rooms, style.doors, rng)
-    walls = shared_walls([r.polygon for r in rooms], 0.26)
     front = _front_door(drafts, rooms, style.doors, rng)
-    windows = outer_windows(rooms, walls, rng)
+    windows = outer_windows(rooms, rng)
     if front is None:
         return Building(name, rooms, passages, windows)
     door = shapely.LineString(front.segment).buffer(0.2)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from panoplan.simulate.adjacency import SharedWall, shared_walls
+from panoplan.simulate.adjacency import SharedWall, longest_walls, shared_walls
 from panoplan.simulate.buildings import InteriorRoom, Passage, PassageKind
 
 WAYS = frozenset({"corridor", "hall"})
@@ -59,11 +59,9 @@ def join(
     Returns:
         At most one passage a pair of rooms.
     """
-    longest: dict[tuple[int, int], SharedWall] = {}
-    for wall in shared_walls([r.polygon for r in rooms], _THICKEST_M):
-        longest[wall.rooms] = max(wall, longest.get(wall.rooms, wall), key=lambda w: w.length)
+    walls = longest_walls(shared_walls([r.polygon for r in rooms], _THICKEST_M))
     ranked = sorted(
-        ((_rank(rooms, wall) + rng.random(), wall) for wall in longest.values()),
+        ((_rank(rooms, wall) + rng.random(), wall) for wall in walls),
         key=lambda pair: pair[0],
     )
     group = list(range(len(rooms)))

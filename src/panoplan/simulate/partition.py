@@ -58,6 +58,29 @@ def cut(
     )
 
 
+def upright_cut(
+    polygon: FloatArray, x: float, slant: float, rng: np.random.Generator
+) -> tuple[FloatArray, FloatArray]:
+    """Puts a wall across x.
+
+    Args:
+        polygon: (N, 2) convex, counter-clockwise, metres.
+        x: where the wall is in the middle of the polygon's depth.
+        slant: by which it leaves the square, rad.
+        rng: of its thickness.
+
+    Returns:
+        What lies at lower x, and at higher x.
+    """
+    middle = np.array([x, (polygon[:, 1].min() + polygon[:, 1].max()) / 2])
+    return cut(polygon, middle, np.array([np.sin(slant), np.cos(slant)]), wall_thickness(rng))
+
+
+def wall_thickness(rng: np.random.Generator) -> float:
+    """Of an inner wall, 8 to 25 cm, in metres."""
+    return float(rng.uniform(0.08, 0.25))
+
+
 def notch(
     polygon: FloatArray, corner: int, sizes: tuple[float, float], thickness: float
 ) -> tuple[FloatArray, FloatArray]:
@@ -90,6 +113,13 @@ def notch(
     others = [polygon[(corner + k) % len(polygon)] for k in range(1, len(polygon))]
     rest = np.array([at(a, 0.0), *others, at(0.0, b), at(a, b)])
     return small, rest
+
+
+def without_straight_corners(ring: FloatArray) -> FloatArray:
+    """(M, 2) the ring (N, 2) less its corners at which it goes straight on."""
+    before, after = ring - np.roll(ring, 1, axis=0), np.roll(ring, -1, axis=0) - ring
+    cross = before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0]
+    return np.asarray(ring[np.abs(cross) > 1e-6 * np.hypot(*before.T) * np.hypot(*after.T)])
 
 
 def _welded(points: list[FloatArray]) -> FloatArray:

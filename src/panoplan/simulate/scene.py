@@ -11,7 +11,8 @@ import shapely
 
 from panoplan.errors import InputError
 from panoplan.geometry.rigid import heading_of
-from panoplan.simulate.buildings import Building, Passage, PassageKind, make_flat
+from panoplan.simulate.buildings import Building, Passage, PassageKind
+from panoplan.simulate.flats import make_flat
 from panoplan.simulate.noise import GRADES, NoiseModel, draw_leaks, noisy_layout, partly_closed
 from panoplan.simulate.odometry import drifted, in_units, toured, wandered
 from panoplan.simulate.views import View, ViewCaster, tilted
@@ -59,8 +60,10 @@ class SimulatedScene:
 
     @property
     def ch_per_su(self) -> float:
-        """Camera heights a trajectory unit: what scale recovery should find."""
-        return self.metres_per_su / self.camera_height_m
+        """Heights of the first camera, bob included, a unit: what scale recovery should find."""
+        assert self.truth.trajectory is not None
+        first_m = self.camera_height_m - float(self.truth.trajectory.translations[0, 1])
+        return self.metres_per_su / first_m
 
     @property
     def true_layouts(self) -> Iterator[Layout]:
@@ -365,8 +368,8 @@ def _before(passage: Passage, position: FloatArray) -> bool:
 def _depth_within(passage: Passage, room: int, position: FloatArray) -> float:
     """How far beyond its room's face of a passage a camera stands, metres; 0 before it."""
     side = passage.side(room)
-    outward = passage.outward * (1.0 if side == 0 else -1.0)
-    return max(float(outward @ (position - passage.faces[side, 0])), 0.0)
+    beyond = passage.outward_from(room) @ (position - passage.faces[side, 0])
+    return max(float(beyond), 0.0)
 
 
 def _some(trajectory: Trajectory, kept: IntArray) -> Trajectory:

@@ -173,7 +173,7 @@ class ViewCaster:
         for k, _ in self.building.neighbours(room):
             passage = self.building.passages[k]
             side = passage.side(room)
-            outward = passage.outward * (1.0 if side == 0 else -1.0)
+            outward = passage.outward_from(room)
             near, far = passage.faces[side], passage.faces[1 - side]
             along = near[1] - near[0]
             depth = float(outward @ (position - near[0]))
@@ -188,7 +188,7 @@ class ViewCaster:
         """What stops the rays that leave a room through one of its passages."""
         passage = self.building.passages[index]
         side = passage.side(room)
-        outward = passage.outward * (1.0 if side == 0 else -1.0)
+        outward = passage.outward_from(room)
         near, far = passage.faces[side], passage.faces[1 - side]
         jambs = _Faces(near, far, _label(Surface.WALL, 2), np.full(2, -1))
         along = (near[1] - near[0]) / passage.width

@@ -218,7 +218,7 @@ class _Footing:
         passages = [(k, building.passages[k]) for k, _ in building.neighbours(room)]
         for clearance in _CLEARANCES_M:
             floor = self.outline.buffer(-clearance, join_style="mitre")
-            ends = {k: _threshold(p, p.side(room), clearance + 1e-4) for k, p in passages}
+            ends = {k: _threshold(p, room, clearance + 1e-4) for k, p in passages}
             landings = {k: _landing(s, s.rooms.index(room), clearance + 1e-4) for k, s in stairs}
             if isinstance(floor, shapely.Polygon) and not floor.is_empty:
                 self.floor = floor.buffer(1e-6, join_style="mitre")
@@ -263,10 +263,10 @@ def _bends(ring: shapely.LinearRing) -> FloatArray:
     return np.asarray(points[before[:, 0] * after[:, 1] - before[:, 1] * after[:, 0] < 0])
 
 
-def _threshold(passage: Passage, side: int, distance: float) -> FloatArray:
-    """The point `distance` before the middle of a passage, on one of its sides."""
-    inwards = passage.outward * (-1.0 if side == 0 else 1.0)
-    return np.asarray(passage.faces[side].mean(axis=0) + distance * inwards)
+def _threshold(passage: Passage, room: int, distance: float) -> FloatArray:
+    """The point of a room `distance` before the middle of one of its passages."""
+    middle = passage.faces[passage.side(room)].mean(axis=0)
+    return np.asarray(middle - distance * passage.outward_from(room))
 
 
 def _landing(stairs: Stairs, end: int, distance: float) -> FloatArray:

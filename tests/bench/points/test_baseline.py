@@ -13,7 +13,7 @@ from panoplan.bench.points.maps import maps
 from panoplan.bench.points.segmentation import segmented
 from panoplan.errors import InputError
 from panoplan.metrics.rooms import iou, region
-from panoplan.simulate.buildings import make_flat
+from panoplan.simulate.flats import make_flat
 from panoplan.simulate.scan import scanned
 
 L_ROOM = np.array([[0, 0], [6, 0], [6, 3], [3, 3], [3, 5], [0, 5]], dtype=float)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from tests.simulate.test_views import two_rooms
 
-from panoplan.simulate.buildings import make_flat
+from panoplan.simulate.flats import make_flat
 from panoplan.simulate.render.labels import Labeller
 from panoplan.simulate.render.scene import Scene
 from panoplan.simulate.walks import about_y

@@ -5,7 +5,8 @@ import pytest
 import shapely
 
 from panoplan.geometry.sphere import column_heading
-from panoplan.simulate.buildings import make_flat, rectangle, single_room
+from panoplan.simulate.buildings import rectangle, single_room
+from panoplan.simulate.flats import make_flat
 from panoplan.simulate.render.cast import ray_caster
 from panoplan.simulate.render.labels import Labeller
 from panoplan.simulate.render.lamp import Lamp

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from panoplan.simulate.buildings import Building, make_corridor_building, make_flat
+from panoplan.simulate.buildings import Building
 from panoplan.simulate.families import family_of, make_building
+from panoplan.simulate.flats import make_corridor_building, make_flat
 from panoplan.simulate.houses import make_house
 from panoplan.simulate.joining import Joinery
 

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from panoplan.formats.sequence import write_sequence
-from panoplan.simulate.buildings import make_flat
+from panoplan.simulate.flats import make_flat
 from panoplan.simulate.render.record import IMAGES, record
 from panoplan.simulate.render.scene import QUALITIES
 from panoplan.simulate.scene import SimulatedScene, simulate
