@@ -55,9 +55,7 @@ def _scene(work: tuple[Grade, int], config: Config, metric: bool) -> dict[str, A
     walk = Walk(unit, scene.camera_height_m, len(scene.keyframes))
     plan = estimate(scene.keyframes, config, walk)
     assert scene.truth.trajectory is not None
-    # The method's unit of length is the height of the first camera, bob included.
-    first_m = scene.camera_height_m - float(scene.truth.trajectory.translations[0, 1])
-    report = evaluate(plan, scene.truth, align="none", true_ch_per_su=scene.metres_per_su / first_m)
+    report = evaluate(plan, scene.truth, align="none", true_ch_per_su=scene.ch_per_su)
     odometry = scene.metres_per_su * scene.odometry.translations[:, [0, 2]]
     true = scene.truth.trajectory.translations[:, [0, 2]]
     drift_cm = 100 * float(np.sqrt(np.mean(np.sum((odometry - true) ** 2, axis=1))))

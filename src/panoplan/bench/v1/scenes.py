@@ -118,14 +118,9 @@ def recorded(scene: SimulatedScene) -> Recording:
         scene: the scene.
 
     Returns:
-        Its keyframes and truth. The method's unit of length is the height of the first camera, bob
-        included, and so is that of the true scale.
+        Its keyframes and truth.
     """
-    assert scene.truth.trajectory is not None
-    first_m = scene.camera_height_m - float(scene.truth.trajectory.translations[0, 1])
-    return Recording(
-        scene.keyframes, scene.truth, scene.camera_height_m, scene.metres_per_su / first_m
-    )
+    return Recording(scene.keyframes, scene.truth, scene.camera_height_m, scene.ch_per_su)
 
 
 @dataclass(frozen=True)

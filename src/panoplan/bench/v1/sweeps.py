@@ -29,8 +29,9 @@ def noise(swept: str, factor: float) -> NoiseModel:
 
     Args:
         swept: of `SWEEPS`; "keyframes" changes no error.
-        factor: on the boundary's own error and the common one of a panorama's ranges; on the
-            odometry's errors; or on the probabilities that a boundary goes through a passage.
+        factor: on the boundary's own error, the common one of a panorama's ranges and that of its
+            camera's height; on how far the odometry errs, not on how often it jumps or is lost; or
+            on the probabilities that a boundary goes through a passage.
     """
     if swept == "layout errors":
         bins = (
