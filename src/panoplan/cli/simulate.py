@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from panoplan.simulate.scene import Grade, SimulatedScene
 
 _MOST_SCENES = 10_000
+_STEP_M = 0.4
+_WIDTH_PX = 1024
 
 
 def add_parser(commands: Any) -> None:
@@ -56,7 +58,7 @@ def add_parser(commands: Any) -> None:
         "--rooms", type=int, choices=range(5, 10), metavar="5-9", help="rooms of a plain flat"
     )
     parser.add_argument(
-        "--step", type=float, default=0.4, metavar="M", help="metres a keyframe of a plain flat"
+        "--step", type=float, metavar="M", help="metres a keyframe of a plain flat (default: 0.4)"
     )
     parser.add_argument(
         "--format", choices=["sequence", "mp3d-fpe"], default="sequence", help="kind of folder"
@@ -67,7 +69,7 @@ def add_parser(commands: Any) -> None:
         help="also photographs of every keyframe, their depth and true layouts (sequence only)",
     )
     parser.add_argument(
-        "--image-width", type=int, default=1024, metavar="PX", help="of photographs (default: 1024)"
+        "--image-width", type=int, metavar="PX", help="of photographs (default: 1024)"
     )
     parser.add_argument("--quiet", action="store_true", help="no progress")
     parser.set_defaults(act=act)
@@ -75,24 +77,7 @@ def add_parser(commands: Any) -> None:
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
-    if not 0.05 <= options.step <= 5:
-        raise InputError("--step", f"{options.step:g}", "0.05 to 5 metres")
-    if options.scenes is not None and not 1 <= options.scenes <= _MOST_SCENES:
-        raise InputError("--scenes", str(options.scenes), f"1 to {_MOST_SCENES}")
-    if options.family is not None and options.rooms is not None:
-        raise InputError("--rooms", "with --family", "one of them: a family draws its rooms")
-    if options.building is not None and (options.family or options.rooms):
-        raise InputError("--building", "--family or --rooms", "one of them")
-    if options.storeys != 1 and options.family is None:
-        raise InputError("--storeys", "no --family", "a family, whose buildings are stacked")
-    if options.storeys != 1 and options.render:
-        raise InputError("--storeys", "--render", "one of them: photographs are of one storey")
-    if options.output.exists() and (not options.output.is_dir() or any(options.output.iterdir())):
-        raise InputError(options.output, "something there", "a new or an empty folder")
-    if options.render and options.format != "sequence":
-        raise InputError("--render", f"--format {options.format}", "--format sequence")
-    if options.image_width % 2 or not 64 <= options.image_width <= 8192:
-        raise InputError("--image-width", str(options.image_width), "an even number, 64 to 8192")
+    _check(options)
     count = options.scenes or 1
     told = []
     with progress("simulate", quiet=options.quiet) as report:
@@ -107,6 +92,34 @@ def act(options: argparse.Namespace) -> int:
             report(number + 1, count)
     print("\n".join(told))
     return 0
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Refuses options that are out of range or do not go together."""
+    step = options.step
+    if step is not None and not 0.05 <= step <= 5:
+        raise InputError("--step", f"{step:g}", "0.05 to 5 metres")
+    if step is not None and (options.family or options.building or options.stills):
+        raise InputError("--step", "no walk through a plain flat", "one of them")
+    if options.scenes is not None and not 1 <= options.scenes <= _MOST_SCENES:
+        raise InputError("--scenes", str(options.scenes), f"1 to {_MOST_SCENES}")
+    if options.family is not None and options.rooms is not None:
+        raise InputError("--rooms", "with --family", "one of them: a family draws its rooms")
+    if options.building is not None and (options.family or options.rooms):
+        raise InputError("--building", "--family or --rooms", "one of them")
+    if options.storeys != 1 and options.family is None:
+        raise InputError("--storeys", "no --family", "a family, whose buildings are stacked")
+    if options.storeys != 1 and options.render:
+        raise InputError("--storeys", "--render", "one of them: photographs are of one storey")
+    if options.output.exists() and (not options.output.is_dir() or any(options.output.iterdir())):
+        raise InputError(options.output, "something there", "a new or an empty folder")
+    if options.render and options.format != "sequence":
+        raise InputError("--render", f"--format {options.format}", "--format sequence")
+    width = options.image_width
+    if width is not None and options.render is None:
+        raise InputError("--image-width", "no --render", "photographs")
+    if width is not None and (width % 2 or not 64 <= width <= 8192):
+        raise InputError("--image-width", str(width), "an even number, 64 to 8192")
 
 
 def _scene(options: argparse.Namespace, seed: int) -> SimulatedScene:
@@ -126,7 +139,7 @@ def _scene(options: argparse.Namespace, seed: int) -> SimulatedScene:
         options.grade or "mild",
         stills=options.stills,
         rooms=options.rooms,
-        step_m=options.step,
+        step_m=options.step or _STEP_M,
     )
 
 
@@ -156,7 +169,7 @@ def _photographed(
         scene,
         seed,
         QUALITIES[options.render],
-        width=options.image_width,
+        width=options.image_width or _WIDTH_PX,
         told=lambda done, total: report(done, total, f"rendering {folder.name}"),
     )
 

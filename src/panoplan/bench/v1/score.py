@@ -12,6 +12,7 @@ from panoplan.bench.v1.store import KeptScene
 from panoplan.errors import InputError
 from panoplan.geometry.polygons import signed_area
 from panoplan.metrics.alignment import Freedom
+from panoplan.metrics.apertures import merged_faces
 from panoplan.metrics.report import Report, evaluate
 from panoplan.metrics.rooms import Score, region, visited_rooms
 from panoplan.types.plan import FloorPlan
@@ -100,7 +101,7 @@ def _nothing_found(scene: KeptScene) -> Counts:
     true["corners"] = sum(
         len(room.polygon) for room, seen in zip(plan.rooms, entered, strict=True) if seen
     )
-    true["doors"] = len(plan.doors)
+    true["doors"] = len(merged_faces(plan.doors))
     return {
         **{name: [0, count, 0] for name, count in true.items()},
         **dict.fromkeys(("mean_iou", "overlap_m2", "corner_cm", "ate_cm")),
