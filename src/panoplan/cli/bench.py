@@ -14,7 +14,6 @@ from panoplan.cli import bench_v1, settings
 from panoplan.cli.progress import progress
 from panoplan.errors import InputError
 from panoplan.formats.atomic import write_text
-from panoplan.formats.sequence import TRUE_TRAJECTORY
 
 if TYPE_CHECKING:
     from panoplan.config import Config
@@ -165,6 +164,8 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
 
 def _scenes(path: Path) -> list[Path]:
     """The scene with true poses, or the scenes in a folder."""
+    from panoplan.formats.sequence import TRUE_TRAJECTORY
+
     if not path.is_dir():
         raise InputError(path, "no folder", "a scene with known truth, or a folder of them")
     if (path / TRUE_TRAJECTORY).exists():
