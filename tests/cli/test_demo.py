@@ -28,7 +28,7 @@ def test_a_plan_comes_from_photographs_alone(tmp_path, monkeypatch, capsys):
     whole = sample.sample_home(5)
     assert len(whole.building.rooms) == 5
     monkeypatch.setattr(sample, "sample_home", lambda seed: _first_steps(whole))
-    monkeypatch.setattr(os, "sched_getaffinity", lambda process: {0})
+    monkeypatch.setattr(os, "cpu_count", lambda: 1)
     monkeypatch.setenv("PANOPLAN_CACHE", str(tmp_path / "cache"))
     place = tmp_path / "demo"
     assert main(["demo", "-o", str(place)]) == 0
@@ -41,10 +41,22 @@ def test_a_plan_comes_from_photographs_alone(tmp_path, monkeypatch, capsys):
     assert plan.unit == "m"
     assert any(room.polygon is not None for room in plan.rooms)
     assert (place / "comparison.png").read_bytes().startswith(b"\x89PNG")
+    # Stopped after the photographs, it goes on with them; those of another home are told.
+    (place / "comparison.png").unlink()
+    taken = {path.name: path.stat().st_mtime_ns for path in list_images(place / "photographs")}
+    assert main(["demo", "-o", str(place)]) == 0
+    assert (place / "comparison.png").exists()
+    now = {path.name: path.stat().st_mtime_ns for path in list_images(place / "photographs")}
+    assert now == taken
+    other = sample.simulate(whole.building, 6, "exact", keyframes_per_room=1)
+    other = replace(other, name="another")
+    monkeypatch.setattr(sample, "sample_home", lambda seed: other)
+    assert main(["demo", "-o", str(place), "--seed", "6"]) == 2
+    assert "another home's" in capsys.readouterr().err
 
 
 def test_a_folder_with_something_in_it_is_left_alone(tmp_path, capsys):
     (tmp_path / "mine.txt").write_text("mine")
     assert main(["demo", "-o", str(tmp_path)]) == 2
-    assert "an empty folder" in capsys.readouterr().err
+    assert "a new folder" in capsys.readouterr().err
     assert [path.name for path in tmp_path.iterdir()] == ["mine.txt"]

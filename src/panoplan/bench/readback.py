@@ -28,7 +28,7 @@ def svg_areas(files: Sequence[Path]) -> list[float]:
         square_m = _square_metres(root.findtext(f"{_SVG}title") or "")
         for node in root.iter(f"{_SVG}path"):
             if node.get("id", "").startswith("room_"):
-                found.append(square_m * _path_area(node.get("d", "")))
+                found.append(square_m * path_area(node.get("d", "")))
     return found
 
 
@@ -57,8 +57,12 @@ def _square_metres(words: str) -> float:
     return float("nan") if scale is None else (float(scale[1]) / 1000) ** 2
 
 
-def _path_area(text: str) -> float:
-    """Square user units within an SVG path of straight lines, holes taken off."""
+def path_area(text: str) -> float:
+    """Square user units within an SVG path of straight lines, holes taken off.
+
+    Args:
+        text: the path's `d`: closed rings, absolute.
+    """
     total = 0.0
     for ring in text.strip("M").split("M"):
         numbers = [float(word) for word in re.split("[ L]", ring.strip("Z"))]

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
 EXIT_NO_ROOM = 3
 _MOST_JOBS = 4
+_OURS = {"photographs", "truth", "plan", "comparison.png"}
+"""What the command makes: one that was interrupted goes on."""
 
 
 def add_parser(commands: Any) -> None:
@@ -33,7 +35,7 @@ def add_parser(commands: Any) -> None:
         "--output",
         type=Path,
         default=Path("panoplan-demo"),
-        help="new folder (default: panoplan-demo)",
+        help="new folder, or that of a demo to go on with (default: panoplan-demo)",
     )
     parser.add_argument("--seed", type=int, default=5, help="of the home and its looks")
     parser.add_argument("--quiet", action="store_true", help="no progress, no summary")
@@ -48,6 +50,7 @@ def act(options: argparse.Namespace) -> int:
     from panoplan.errors import InputError
     from panoplan.exporters.compare import write_comparison
     from panoplan.formats.run_folder import RunFolder
+    from panoplan.formats.sequence import read_sequence
     from panoplan.intake.given import Given
     from panoplan.intake.layouts import open_network
     from panoplan.intake.live import not_followed
@@ -58,8 +61,8 @@ def act(options: argparse.Namespace) -> int:
     from panoplan.simulate.render.sample import photograph, sample_home
 
     place: Path = options.output
-    if place.exists() and (not place.is_dir() or any(place.iterdir())):
-        raise InputError(place, "something there", "a new or an empty folder")
+    if place.exists() and (not place.is_dir() or any(p.name not in _OURS for p in place.iterdir())):
+        raise InputError(place, "something there", "a new folder, or one of this command")
     # What is missing is told before the work begins.
     open_network(None, ())
     load_pycolmap()
@@ -67,9 +70,11 @@ def act(options: argparse.Namespace) -> int:
     config, folder = Config(), RunFolder(place / "plan")
     with progress("photographs", quiet=options.quiet) as report:
         home = sample_home(options.seed)
-        jobs = min(len(os.sched_getaffinity(0)), _MOST_JOBS)
-        told = partial(_photographs, report)
-        photograph(photographs, truth, home, options.seed, jobs=jobs, told=told)
+        if not photographs.exists():
+            told, jobs = partial(_photographs, report), min(os.cpu_count() or 1, _MOST_JOBS)
+            photograph(photographs, truth, home, options.seed, jobs=jobs, told=told)
+        elif read_sequence(truth).name != home.name:
+            raise InputError(photographs, "another home's", f"those of --seed {options.seed}")
         height = home.camera_height_m
         given = Given(photographs, camera_height_m=height)
         cache = Cache(cache_folder())

@@ -1,7 +1,6 @@
 """Sheets read back: SVG by an XML parser, PDF by pdfminer."""
 
 import io
-import re
 from xml.etree import ElementTree
 
 import numpy as np
@@ -10,6 +9,7 @@ import shapely
 from tests.exporters.storeys import ODD_NAMES, flat, turned_plan, two_storeys
 from tests.metrics.plans import FLAT, plan, square
 
+from panoplan.bench.readback import path_area
 from panoplan.errors import InputError
 from panoplan.exporters.sheet.compose import sheets
 from panoplan.exporters.sheet.dimensions import text_box
@@ -28,16 +28,6 @@ def areas(made):
 
 def svg_root(sheet):
     return ElementTree.fromstring(sheet_svg(sheet))
-
-
-def path_area(text):
-    """Square user units that an SVG path of straight lines encloses, holes taken off."""
-    total = 0.0
-    for ring in text.strip("M").split("M"):
-        numbers = [float(word) for word in re.split("[ L]", ring.strip("Z"))]
-        x, y = np.array(numbers).reshape(-1, 2).T
-        total += float(np.sum(x * np.roll(y, -1) - np.roll(x, -1) * y)) / 2
-    return abs(total)
 
 
 def pdf_pages(data):
