@@ -197,6 +197,23 @@ def test_an_id_given_twice_is_refused_and_changes_nothing():
     assert estimator.state is before
 
 
+@pytest.mark.parametrize("rooms", [(0,) * 20, (4,) * 10 + (1,) * 10, (0,) * 5 + (1,) * 15])
+def test_rooms_that_are_known_are_not_told_apart_otherwise(rooms):
+    plan = _plan(_two_rooms(), EARLY, Walk("m", 1.5, 20, rooms))
+    told = [pose.room for pose in plan.trajectory]
+    pairs = set(zip(told, rooms, strict=True))
+    assert len(pairs) == len(set(told)) == len(set(rooms))
+
+
+def test_known_rooms_of_fewer_keyframes_are_refused():
+    keyframes = _two_rooms()
+    estimator = FloorPlanEstimator(EARLY, Walk("m", 1.5, rooms=(0, 0)))
+    for keyframe in keyframes[:2]:
+        estimator.update(keyframe)
+    with pytest.raises(InputError, match="one for each keyframe"):
+        estimator.update(keyframes[2])
+
+
 def test_a_fraction_needs_the_length_of_the_walk():
     config = override(Config(), {"scale": {"warmup": 0.2}})
     (keyframe,) = walk(RECTANGLE, [[0.0, 0.0]])

@@ -39,11 +39,15 @@ class FloorPlanEstimator:
             What happened, in order.
 
         Raises:
-            InputError: a keyframe with this id was given before.
+            InputError: a keyframe with this id was given before, or the walk knows the rooms of
+                fewer keyframes.
             ConfigError: the warm-up is a fraction of a walk whose length is not known.
         """
         if keyframe.id in self._ids:
             raise InputError(f"keyframe {keyframe.id}", "an id given before", "a new id")
+        rooms = self.state.walk.rooms
+        if rooms is not None and len(self.state.cameras) >= len(rooms):
+            raise InputError("rooms of the walk", f"{len(rooms)}", "one for each keyframe")
         self.state, events = step(self.state, keyframe, self.config)
         self._ids.add(keyframe.id)
         return events

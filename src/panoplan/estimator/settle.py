@@ -295,16 +295,16 @@ def _regrouped(
 
     A view is of the room of that which represents it. A room that comes out keeps the number of the
     room that most of its views were in; where two claim one number, the one with more of its views
-    has it, the other gets a new one. With `keep` the views stay together as they are.
+    has it, the other gets a new one. With `keep` the views stay together as they are; what the walk
+    knows of its rooms counts more.
     """
     chosen = _holding(state, representatives)
     before = {view.index: state.rooms[k].number for k in chosen for view in state.rooms[k].views}
     raw = _looked_at(state, chosen, representatives)
     views = CorrectedLayouts(raw, [state.cameras[view.index].correction for view in raw])
-    place = {view.index: k for k, view in enumerate(raw)}
-    rooms_before = ([v.index for v in state.rooms[k].views] for k in chosen)
-    known = [[place[index] for index in own if index in place] for own in rooms_before]
-    planned = plan_rooms(views, config, known if keep else None)
+    known = state.walk.rooms or (before if keep else None)
+    together = None if known is None else _together([known[view.index] for view in raw])
+    planned = plan_rooms(views, config, together)
     spoken_for: dict[int, list[RegisteredLayout]] = {}
     for view in _views(state, chosen):
         spoken_for.setdefault(representatives[view.index], []).append(view)
@@ -341,16 +341,21 @@ def _regrouped(
         # The camera goes on in the room of its last keyframe.
         current = after[max(k for k, number in before.items() if number == current)]
     kept = [room for k, room in enumerate(state.rooms) if k not in chosen]
-    together = tuple(sorted([*kept, *made], key=lambda room: room.number))
+    every = tuple(sorted([*kept, *made], key=lambda room: room.number))
     return replace(
         state,
-        rooms=together,
-        current=next((k for k, room in enumerate(together) if room.number == current), None),
+        rooms=every,
+        current=next((k for k, room in enumerate(every) if room.number == current), None),
         cameras=tuple(
             replace(camera, room=after[k]) if k in after and camera.room != after[k] else camera
             for k, camera in enumerate(state.cameras)
         ),
     )
+
+
+def _together(numbers: Sequence[int]) -> list[list[int]]:
+    """The places of each number."""
+    return [np.flatnonzero(np.equal(numbers, k)).tolist() for k in np.unique(numbers)]
 
 
 def compose(state: State, config: Config) -> State:

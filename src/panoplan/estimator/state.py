@@ -28,11 +28,14 @@ class Walk:
         camera_height_m: of the cameras above the floor in metres, or None; where they bob, of the
             median one of the warm-up.
         expected_keyframes: length of the walk, needed where the warm-up is a fraction of it.
+        rooms: a number for each keyframe, the same for those of one room, where that is known; only
+            a method that tells rooms apart by all their views heeds it.
     """
 
     trajectory_unit: Literal["unknown", "m"] = "unknown"
     camera_height_m: float | None = None
     expected_keyframes: int | None = None
+    rooms: tuple[int, ...] | None = None
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal
-from unittest.mock import patch
 
 import numpy as np
 import shapely
@@ -16,15 +14,11 @@ from panoplan.bench.v1.scenes import Recording, Simulated, code_version, digest,
 from panoplan.bench.v1.score import score, summary
 from panoplan.bench.v1.store import KeptScene
 from panoplan.bench.v1.study import Runner
-from panoplan.config import Config
-from panoplan.estimator import settle
 from panoplan.metrics.rooms import region
 from panoplan.simulate.noise import EXACT, REAL
-from panoplan.stages.plan.floorplan import PlannedRoom, plan_rooms
 from panoplan.types.arrays import IntArray
 from panoplan.types.pose import Pose
 from panoplan.types.truth import GroundTruth
-from panoplan.types.view import RegisteredLayout
 
 Known = Literal["nothing", "scale", "poses", "layouts", "grouping"]
 KNOWN: tuple[Known, ...] = ("nothing", "scale", "poses", "layouts", "grouping")
@@ -59,9 +53,7 @@ class Ablated:
     def measure(self) -> dict[str, Any]:
         """Scores as of `score`."""
         recording = _knowing(self.source, self.known)
-        with _grouped(recording.truth) if self.known == "grouping" else _as_it_is():
-            made = made_of(recording, self.row.config)
-        scores = score(KeptScene.of(recording), made)
+        scores = score(KeptScene.of(recording), made_of(recording, self.row.config))
         return {"scene": self.source.name, "known": self.known, **scores}
 
 
@@ -82,7 +74,7 @@ def ablated(sources: Sequence[Simulated], runner: Runner, row: Row) -> dict[str,
 
 
 def _knowing(source: Simulated, known: Known) -> Recording:
-    """The walk with its poses, its scale or its layouts as they truly are."""
+    """The walk with its poses, its scale, its layouts or its rooms as they truly are."""
     if known == "layouts":
         exact = replace(EXACT, name="exact layouts", odometry=REAL.odometry)
         return replace(source, grade=exact).open()
@@ -90,6 +82,8 @@ def _knowing(source: Simulated, known: Known) -> Recording:
     recording = recorded(scene)
     true = scene.truth.trajectory
     assert true is not None
+    if known == "grouping":
+        return replace(recording, rooms=tuple(_true_rooms(scene.truth).tolist()))
     if known == "poses":
         poses = [
             Pose(true.rotations[k], true.translations[k] / scene.metres_per_su)
@@ -114,29 +108,6 @@ def _knowing(source: Simulated, known: Known) -> Recording:
             trajectory_unit="m",
         )
     return recording
-
-
-@contextmanager
-def _as_it_is() -> Iterator[None]:
-    yield
-
-
-@contextmanager
-def _grouped(truth: GroundTruth) -> Iterator[None]:
-    """Views are told apart by the true room that their camera stands in."""
-    room = _true_rooms(truth)
-
-    def planned(
-        views: Sequence[RegisteredLayout],
-        config: Config,
-        known: Sequence[Sequence[int]] | None = None,
-    ) -> tuple[PlannedRoom, ...]:
-        own = room[[view.index for view in views]]
-        groups = [np.flatnonzero(own == number).tolist() for number in np.unique(own)]
-        return plan_rooms(views, config, groups)
-
-    with patch.object(settle, "plan_rooms", planned):
-        yield
 
 
 def _true_rooms(truth: GroundTruth) -> IntArray:

@@ -15,7 +15,7 @@ from panoplan.bench.v1.study import Runner
 from panoplan.config import Config, override
 from panoplan.estimator.assemble import assemble
 from panoplan.estimator.front import FloorPlanEstimator
-from panoplan.estimator.state import State, Walk
+from panoplan.estimator.state import State
 from panoplan.estimator.step import evidence_of
 from panoplan.stages.shape.ispa import room_shape
 
@@ -72,8 +72,7 @@ class Shaped:
         """Scores as of `score` by path, each with the rooms shaped; CPU seconds are theirs."""
         recording = self.source.open()
         config = ROW.config
-        walk = Walk("unknown", recording.camera_height_m, len(recording.keyframes))
-        estimator = FloorPlanEstimator(config, walk)
+        estimator = FloorPlanEstimator(config, recording.walk)
         for keyframe in recording.keyframes:
             estimator.update(keyframe)
         truth, made = KeptScene.of(recording), {}

@@ -13,7 +13,6 @@ from panoplan.bench.points.baseline import PointsConfig, plan_from_points
 from panoplan.bench.v1.scenes import Recording, Source, code_version, digest
 from panoplan.config import Config, as_dict, override, preset
 from panoplan.errors import InputError, PanoplanError
-from panoplan.estimator.state import Walk
 from panoplan.geometry.rigid import heading_of
 from panoplan.types.plan import FloorPlan, PlanPose
 
@@ -125,8 +124,7 @@ def made_of(recording: Recording, config: Config) -> Prediction:
         The plan, or why there is none: a scene that a method fails on counts, it does not stop the
         benchmark.
     """
-    walk = Walk(recording.trajectory_unit, recording.camera_height_m, len(recording.keyframes))
-    return _timed(lambda: estimate(recording.keyframes, config, walk))
+    return _timed(lambda: estimate(recording.keyframes, config, recording.walk))
 
 
 def made_of_points(source: Source) -> Prediction:

@@ -13,6 +13,7 @@ import panoplan
 from panoplan.datasets.detect import open_scene, read_truth
 from panoplan.datasets.mp3d_fpe import version_folder
 from panoplan.errors import InputError
+from panoplan.estimator.state import Walk
 from panoplan.formats.ply import read_ply_points
 from panoplan.simulate.families import simulate_scene
 from panoplan.simulate.noise import NoiseModel
@@ -33,6 +34,7 @@ class Recording:
         camera_height_m: of the median camera, None where unknown.
         true_ch_per_su: true scale in heights of the first camera, None where unknown.
         trajectory_unit: "m" where the method is told that it is metric.
+        rooms: a number for each keyframe where the method is told which are of one room.
     """
 
     keyframes: tuple[Keyframe, ...]
@@ -40,6 +42,13 @@ class Recording:
     camera_height_m: float | None
     true_ch_per_su: float | None
     trajectory_unit: Literal["unknown", "m"] = "unknown"
+    rooms: tuple[int, ...] | None = None
+
+    @property
+    def walk(self) -> Walk:
+        """What the method is told in advance."""
+        count = len(self.keyframes)
+        return Walk(self.trajectory_unit, self.camera_height_m, count, self.rooms)
 
     @property
     def bare(self) -> Recording:
