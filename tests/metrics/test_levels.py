@@ -8,7 +8,8 @@ from tests.metrics.plans import CAMERAS, FLAT, LEFT, plan, truth
 
 from panoplan.geometry.polygons import signed_area
 from panoplan.metrics.levels import UNKNOWN, aperture_level, camera_levels, true_levels
-from panoplan.metrics.report import as_dict, as_table, evaluate
+from panoplan.metrics.presentation import as_dict, as_table
+from panoplan.metrics.report import evaluate
 from panoplan.types.plan import Aperture
 from panoplan.types.truth import GroundTruth, TrueLevels
 

@@ -8,7 +8,8 @@ from hypothesis import strategies as st
 from tests.metrics.plans import CAMERAS, FLAT, LEFT, RIGHT, TOP, plan, square, truth, turned
 
 from panoplan.errors import InputError
-from panoplan.metrics.report import as_dict, as_table, evaluate
+from panoplan.metrics.presentation import as_dict, as_table
+from panoplan.metrics.report import evaluate
 
 
 def _figures(report):

@@ -11,7 +11,8 @@ from panoplan.bench.estimate import estimate, true_poses
 from panoplan.config import Config
 from panoplan.datasets.detect import read_truth
 from panoplan.estimator.state import Walk
-from panoplan.metrics.report import as_dict, evaluate
+from panoplan.metrics.presentation import as_dict
+from panoplan.metrics.report import evaluate
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.pose import Pose
 

@@ -44,7 +44,8 @@ def act(options: argparse.Namespace) -> int:
     from panoplan.datasets.detect import read_truth
     from panoplan.formats.plan_json import read_plan
     from panoplan.formats.tum import read_tum
-    from panoplan.metrics.report import as_dict, as_table, evaluate
+    from panoplan.metrics.presentation import as_dict, as_table
+    from panoplan.metrics.report import evaluate
 
     visited = None
     if options.visited is not None:
