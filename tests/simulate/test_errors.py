@@ -10,7 +10,8 @@ from panoplan.geometry.rigid import heading_of
 from panoplan.simulate.errors import error_table
 from panoplan.simulate.families import family_of
 from panoplan.simulate.houses import make_house
-from panoplan.simulate.noise import EXACT, MEASURED, REAL
+from panoplan.simulate.measured import MEASURED
+from panoplan.simulate.noise import EXACT, REAL
 from panoplan.simulate.scene import noisy_view
 from panoplan.simulate.views import ViewCaster
 from panoplan.simulate.walks import stills

@@ -5,25 +5,19 @@ import numpy as np
 import pytest
 
 from panoplan.simulate.buildings import Building, InteriorRoom, Passage, rectangle, single_room
+from panoplan.simulate.columns import column_field, correlation
+from panoplan.simulate.leaks import Leak, draw_leaks, partly_closed
+from panoplan.simulate.measured import MEASURED, gross
 from panoplan.simulate.noise import (
     EXACT,
     HARD,
-    MEASURED,
     MILD,
     REAL,
     TARGET_GROSS_SHARE,
     TARGET_SIGMA_DEG,
-    Leak,
     NoiseModel,
-    column_field,
-    correlation,
-    draw_leaks,
-    gross,
-    noisy_corners,
-    noisy_layout,
-    partly_closed,
-    scale_factor,
 )
+from panoplan.simulate.noisy_layouts import noisy_corners, noisy_layout, scale_factor
 from panoplan.simulate.views import View, ViewCaster
 
 HEIGHT, WIDTH, VIEWS = 1.54, 1024, 1500

@@ -8,7 +8,7 @@ from typing import Any
 from panoplan.bench.difficulty import JUDGED
 from panoplan.bench.markdown import table
 from panoplan.bench.record import of_benchmark
-from panoplan.simulate.noise import MEASURED
+from panoplan.simulate.measured import MEASURED
 
 _LABELS = {
     "mean_iou": "mean IoU",

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
-from panoplan.simulate.noise import MEASURED, gross
+from panoplan.simulate.measured import MEASURED, gross
 from panoplan.simulate.spans import column_runs
 from panoplan.simulate.views import Surface, View
 from panoplan.types.arrays import BoolArray, FloatArray

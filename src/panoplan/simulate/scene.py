@@ -13,7 +13,9 @@ from panoplan.errors import InputError
 from panoplan.geometry.rigid import heading_of
 from panoplan.simulate.buildings import Building, Passage, PassageKind
 from panoplan.simulate.flats import make_flat
-from panoplan.simulate.noise import GRADES, NoiseModel, draw_leaks, noisy_layout, partly_closed
+from panoplan.simulate.leaks import draw_leaks, partly_closed
+from panoplan.simulate.noise import GRADES, NoiseModel
+from panoplan.simulate.noisy_layouts import noisy_layout
 from panoplan.simulate.odometry import drifted, in_units, toured, wandered
 from panoplan.simulate.views import View, ViewCaster, tilted
 from panoplan.simulate.walks import Walk, about_y, stills, walk
