@@ -5,14 +5,11 @@ import numpy as np
 import pytest
 
 from panoplan.simulate.buildings import Building, InteriorRoom, Passage, rectangle, single_room
-from panoplan.simulate.columns import column_field, correlation
-from panoplan.simulate.leaks import Leak, draw_leaks, partly_closed
 from panoplan.simulate.measured import MEASURED, gross
 from panoplan.simulate.noise import (
     EXACT,
     HARD,
     MILD,
-    REAL,
     TARGET_GROSS_SHARE,
     TARGET_SIGMA_DEG,
     NoiseModel,
@@ -103,23 +100,6 @@ def test_overall_spread_is_that_of_the_real_network():
     assert degrees[right].std() == pytest.approx(1.3, rel=0.25)
 
 
-def test_autocorrelation_along_the_columns_is_the_measured_one():
-    rng = np.random.default_rng(0)
-    fields = np.array([column_field(WIDTH, rng) for _ in range(4000)])
-    assert fields.std() == pytest.approx(1.0, abs=0.02)
-    found = [np.mean(fields * np.roll(fields, lag, axis=1)) for lag in MEASURED.lags]
-    np.testing.assert_allclose(found, MEASURED.autocorrelation, atol=0.03)
-    # It falls below 1/e at 76 columns.
-    lags = np.arange(200)
-    assert np.argmax(correlation(lags) < np.exp(-1)) == pytest.approx(76, abs=10)
-
-
-def test_correlation_is_an_angle_whatever_the_width():
-    rng = np.random.default_rng(1)
-    fields = np.array([column_field(256, rng) for _ in range(4000)])
-    assert np.mean(fields * np.roll(fields, 16, axis=1)) == pytest.approx(0.43, abs=0.03)
-
-
 def test_scale_factors_have_the_spread_asked_for():
     rng = np.random.default_rng(0)
     hard = np.array([scale_factor(HARD, rng) for _ in range(30000)])
@@ -169,44 +149,6 @@ def test_occluders_hide_a_stretch_of_a_third_of_the_views_and_only_shorten():
     assert hidden.any(axis=1).mean() == pytest.approx(0.3, abs=0.04)
     assert 0.03 < hidden[hidden.any(axis=1)].mean() < 0.25
     assert told.min() >= 0.4
-
-
-def test_leaks_are_as_frequent_and_deep_as_asked():
-    rng = np.random.default_rng(0)
-    draws = [draw_leaks([0, 1], [2], HARD, rng) for _ in range(20000)]
-    doors = np.mean([[k in d for k in (0, 1)] for d in draws])
-    assert doors == pytest.approx(0.08, abs=0.005)
-    assert np.mean([2 in d for d in draws]) == pytest.approx(0.38, abs=0.01)
-    depths = np.array([leak.depth_m for d in draws for leak in d.values()])
-    assert not any(leak.partly for d in draws for leak in d.values())
-    assert np.median(depths) == pytest.approx(MEASURED.leak_median_m, rel=0.05)
-    assert np.quantile(depths, 0.9) == pytest.approx(MEASURED.leak_percentile_90_m, rel=0.08)
-    assert not any(draw_leaks([0, 1], [2], MILD, rng) for _ in range(200))
-
-
-def test_before_a_camera_passages_leak_more_and_some_leak_in_part():
-    rng = np.random.default_rng(0)
-    draws = [draw_leaks([0, 1], [2], REAL, rng, near=[1]) for _ in range(20000)]
-    whole = [np.mean([k in d and not d[k].partly for d in draws]) for k in range(3)]
-    partly = [np.mean([k in d and d[k].partly for d in draws]) for k in range(3)]
-    np.testing.assert_allclose(whole, [0.035, 0.5, 0.28], atol=0.012)
-    np.testing.assert_allclose(partly, [0.045, 0.045, 0.14], atol=0.008)
-
-
-def test_a_leak_in_part_is_closed_in_the_rest():
-    rooms = [InteriorRoom("a", rectangle(4, 4)), InteriorRoom("b", rectangle(4, 4, (4.1, 0)))]
-    faces = [[[4.0, 1.0], [4.0, 3.0]], [[4.1, 1.0], [4.1, 3.0]]]
-    caster = ViewCaster(Building("two", tuple(rooms), (Passage("opening", (0, 1), faces),)))
-    rng = np.random.default_rng(0)
-    for heading in (0.0, np.pi / 2, -np.pi / 2):
-        view = caster.view(np.array([2.0, 2.0]), heading, 1.5, leaks={0: 1.0})
-        assert partly_closed(view, {0: Leak(1.0)}, rng) is view
-        part = partly_closed(view, {0: Leak(1.0, partly=True)}, rng)
-        assert 0.15 < part.leaked.sum() / view.leaked.sum() < 0.85
-        np.testing.assert_array_equal(part.range_m[part.leaked], view.range_m[part.leaked])
-        np.testing.assert_array_equal(part.range_m[~part.leaked], view.closed_range_m[~part.leaked])
-        # What stays open is one stretch.
-        assert (part.leaked & ~np.roll(part.leaked, 1)).sum() == 1
 
 
 @pytest.mark.parametrize("model", [MILD, HARD])
