@@ -7,6 +7,7 @@ import pytest
 
 from panoplan.bench import difficulty, difficulty_tables
 from panoplan.bench.difficulty import measure, read_twin
+from panoplan.bench.record import to_json
 from panoplan.config import Config
 from panoplan.errors import InputError
 from panoplan.formats.sequence import write_sequence
@@ -61,12 +62,14 @@ def test_figures_bands_and_tables(tour, monkeypatch):
         {
             "benchmark": "difficulty",
             "settings": {"preset": "default"},
-            "figures": json.loads(json.dumps(result)),
+            "figures": json.loads(to_json(result)),
         }
     ]
     assert "| mean IoU, with |" in difficulty_tables.figures(files)
     told = difficulty_tables.errors(files)
     assert "| gross on openings | 31.0% |" in told
+    files[0]["figures"]["errors_real"]["leak_median_m"] = None
+    assert "| –, " in difficulty_tables.errors(files)
     assert difficulty_tables.errors([]) == difficulty_tables.figures([]) == ""
 
 

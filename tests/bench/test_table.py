@@ -48,8 +48,8 @@ def test_rows_are_the_figures_by_preset_and_the_rest_of_the_page_stays(page):
     assert "old" not in text
     rows = [line for line in text.splitlines() if line.startswith("| ")][2:]
     assert rows == [
-        "| sound | 1.3 ms | 0.50 | 204 ms | 18 ms | – | 372 MB |",
-        "| default | 1.3 ms | 0.50 | 204 ms | 18 ms | 11.4 s | 372 MB |",
+        "| sound | 1.3 ms | 0.50 | 204 ms | 18 ms | – | 372 MB | 2 cores, a processor |",
+        "| default | 1.3 ms | 0.50 | 204 ms | 18 ms | 11.4 s | 372 MB | 2 cores, a processor |",
     ]
     assert not update(page, page.parent / "results")
 

@@ -188,6 +188,9 @@ def figures(layouts: list[Layout | None], twin: Twin, config: Config) -> dict[st
         layouts: one a camera.
         twin: the tour.
         config: settings.
+
+    Returns:
+        The figures; what there was nothing to measure of is NaN.
     """
     known = Known("m", twin.camera_height_m, len(layouts))
     pairs = zip(twin.keyframes, layouts, strict=True)

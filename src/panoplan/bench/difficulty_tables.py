@@ -35,9 +35,9 @@ def figures(files: list[dict[str, Any]]) -> str:
             for name, label in _LABELS.items():
                 low, high, middle = of["band"][name]
                 verdict = ("yes" if of["within"][name] else "no") if name in JUDGED else "–"
-                band = f"{low:.3g} to {high:.3g}"
-                real = f"{of['real'][name]:.3g}"
-                rows.append([f"{label}, {told}", real, f"{middle:.3g}", band, verdict])
+                band = f"{_form(low, '.3g')} to {_form(high, '.3g')}"
+                real = _form(of["real"][name], ".3g")
+                rows.append([f"{label}, {told}", real, _form(middle, ".3g"), band, verdict])
     heads = ["figure, with or without stated σ", "real", "seeds, median", "5 % to 95 %", "within"]
     return table(heads, rows) if rows else ""
 
@@ -76,36 +76,47 @@ def _rows() -> list[tuple[str, Callable[[_Errors], str]]]:
         *rows,
         (
             "depth of leaks m: median, 90th percentile",
-            lambda e: f"{e['leak_median_m']:.2f}, {e['leak_percentile_90_m']:.1f}",
+            lambda e: _forms((e["leak_median_m"], ".2f"), (e["leak_percentile_90_m"], ".1f")),
         ),
         (
             "scale of a panorama: std, MAD-σ",
-            lambda e: f"{e['scale_std']:.1%}, {e['scale_mad_sigma']:.1%}",
+            lambda e: _forms((e["scale_std"], ".1%"), (e["scale_mad_sigma"], ".1%")),
         ),
         (
             f"autocorrelation at {lags} columns",
-            lambda e: ", ".join(f"{value:.2f}" for value in e["autocorrelation"]),
+            lambda e: _forms(*((value, ".2f") for value in e["autocorrelation"])),
         ),
         (
             "panoramas over 25 % gross, under 5 %",
-            lambda e: f"{e['bad_views']:.0%}, {e['good_views']:.0%}",
+            lambda e: _forms((e["bad_views"], ".0%"), (e["good_views"], ".0%")),
         ),
     ]
 
 
 def _bin(k: int) -> Callable[[_Errors], str]:
-    return lambda e: (
-        f"{e['bias_deg'][k]:+.2f}, {e['sigma_deg'][k]:.2f}, {e['percentile_90_m'][k]:.2f}, "
-        f"{e['gross_share'][k]:.1%}"
+    return lambda e: _forms(
+        (e["bias_deg"][k], "+.2f"),
+        (e["sigma_deg"][k], ".2f"),
+        (e["percentile_90_m"][k], ".2f"),
+        (e["gross_share"][k], ".1%"),
     )
 
 
 def _gross(surface: str) -> Callable[[_Errors], str]:
-    return lambda e: f"{e['gross_by_surface'][surface]:.1%}"
+    return lambda e: _form(e["gross_by_surface"][surface], ".1%")
 
 
 def _stops(kind: str) -> Callable[[_Errors], str]:
-    return lambda e: f"{e['through'][kind]:.1%}, {e['stops'][kind]:.0%}"
+    return lambda e: _forms((e["through"][kind], ".1%"), (e["stops"][kind], ".0%"))
+
+
+def _forms(*values: tuple[float | None, str]) -> str:
+    return ", ".join(_form(value, form) for value, form in values)
+
+
+def _form(value: float | None, form: str) -> str:
+    """A number; a dash where nothing was seen that it could be of."""
+    return "–" if value is None else f"{value:{form}}"
 
 
 def _measured() -> _Errors:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import math
 import os
 import platform
 import subprocess
@@ -36,6 +38,29 @@ def record(name: str, settings: Mapping[str, Any], figures: Any) -> dict[str, An
         "figures": figures,
         "settings": dict(settings),
     }
+
+
+def to_json(data: Mapping[str, Any]) -> str:
+    """The text of a benchmark's file.
+
+    Args:
+        data: plain values.
+
+    Returns:
+        JSON, a line break at its end; NaN, which it cannot tell, is null.
+
+    Raises:
+        ValueError: something is infinite.
+    """
+    return json.dumps(_told(data), indent=1, allow_nan=False) + "\n"
+
+
+def _told(value: Any) -> Any:
+    if isinstance(value, Mapping):
+        return {name: _told(item) for name, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_told(item) for item in value]
+    return None if isinstance(value, float) and math.isnan(value) else value
 
 
 def of_benchmark(records: Sequence[dict[str, Any]], name: str) -> list[dict[str, Any]]:

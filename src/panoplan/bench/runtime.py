@@ -31,9 +31,9 @@ def measure(config: Config, progress: Callable[[int, int], None]) -> dict[str, A
         progress: called with (keyframes done, keyframes in all).
 
     Returns:
-        Milliseconds of update(): without a room being shaped, and with; the 95 % of all keyframes
-        100-200 and 1,900-2,000, whatever they do; of plan(); seconds of finish(); and the peak
-        memory of the process in MB.
+        Milliseconds of update(): without a room being shaped, and with; what 95 % stay below of the
+        last 100 keyframes and of 100 early ones, whatever they do, from the 100th on or since the
+        scale is known; of plan(); seconds of finish(); and the peak memory of the process in MB.
     """
     # As with a live camera, nobody keeps a keyframe once it has been taken in.
     coming = deque(_walk())

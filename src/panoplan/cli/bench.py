@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import re
 from collections.abc import Callable
 from functools import partial
@@ -104,13 +103,13 @@ def act(options: argparse.Namespace) -> int:
         return 0
     if options.output is not None and not options.output.parent.is_dir():
         raise InputError(options.output, "no folder for it", "a file in a folder that exists")
-    from panoplan.bench.record import record
+    from panoplan.bench.record import record, to_json
     from panoplan.config import as_dict
 
     config = settings.resolve(options)
     with progress(options.what, quiet=options.quiet) as report:
         figures = _measured(options, config, report)
-    text = json.dumps(record(options.what, as_dict(config), figures), indent=1) + "\n"
+    text = to_json(record(options.what, as_dict(config), figures))
     if options.output is None:
         print(text, end="")
     else:

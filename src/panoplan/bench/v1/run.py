@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
 
 from panoplan.bench.parallel import Workers, mapped
-from panoplan.bench.record import record
+from panoplan.bench.record import record, to_json
 from panoplan.bench.v1.predict import Row, Task, predict
 from panoplan.bench.v1.scenes import Recording, Source
 from panoplan.bench.v1.score import score, summary
@@ -103,7 +102,7 @@ def write_figures(
     """
     path = folder / f"{benchmark}-{scenes_of}-{settings['preset']}.json"
     data = record(benchmark, settings, {"scenes_of": scenes_of, **figures})
-    write_text(path, json.dumps(data, indent=1) + "\n")
+    write_text(path, to_json(data))
     return path
 
 

@@ -11,11 +11,11 @@ kept.json comes last and makes the rest valid; what has another key is made anew
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from panoplan.bench.record import to_json
 from panoplan.bench.v1.predict import Prediction, Task
 from panoplan.bench.v1.scenes import Recording, Source
 from panoplan.datasets.folder import read_truth
@@ -145,4 +145,4 @@ class Store:
             return None
 
     def _write(self, path: Path, data: dict[str, Any]) -> None:
-        write_text(path, json.dumps(data, indent=1) + "\n")
+        write_text(path, to_json(data))
