@@ -989,9 +989,9 @@ class AdjustConfig:
         2.0, "Residuals beyond so many sigmas pull less and less.", low=0.1, high=100.0
     )
     faces_deg: float = _setting(
-        0.3,
-        "Standard deviation of the angle between the two faces of a wall; robust, as what faces "
-        "may as well be two walls.",
+        0.15,
+        "Standard deviation of the angle between the two faces of a wall, a centimetre over four "
+        "metres; robust, as what faces may as well be two walls.",
         unit="deg",
         low=1e-3,
         high=90.0,
@@ -1026,7 +1026,7 @@ class AdjustConfig:
     odometry_multiples: tuple[float, ...] = _setting(
         (0.02, 0.1, 0.25, 0.5, 1.0, 2.0, 4.0),
         "Multiples of the odometry's sigmas that are tried, increasing; the one with most "
-        "evidence is taken.",
+        "evidence is taken, then that of heading and scale alone.",
         low=0.001,
         high=1000.0,
     )
@@ -1147,7 +1147,7 @@ class AperturesConfig:
     )
     farthest_ch: float = _setting(
         2.7,
-        "A view need not show what is farther away: 4 m.",
+        "A view need not show what is farther away, and a leak there is an error: 4 m.",
         unit="camera heights",
         low=0.5,
         high=100.0,

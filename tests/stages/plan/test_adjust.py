@@ -104,6 +104,26 @@ def test_a_wrong_scale_is_the_stretch():
     assert _adjusted(views, Stretch(1.0, 0.0))[0].stretch == pytest.approx(1.0, abs=1e-6)
 
 
+@pytest.mark.parametrize("seed", range(4))
+def test_a_heading_that_errs_more_than_the_position_is_followed(seed):
+    """What odometries differ by is not only how much they err."""
+    rng = np.random.default_rng(seed)
+    turned = np.deg2rad(np.cumsum(rng.normal(0.0, 1.0, COUNT)))
+    turned -= turned[0]
+    c, s, steps = np.cos(turned[:-1]), np.sin(turned[:-1]), np.diff(TRUE, axis=0).T
+    bent = np.cumsum([c * steps[0] + s * steps[1], c * steps[1] - s * steps[0]], axis=1).T
+    views = _views(np.vstack([TRUE[:1], TRUE[0] + bent]), turned)
+    blurred = []
+    for view in views:
+        waves = np.interp(np.arange(1024), np.arange(0, 1088, 64), 0.02 * rng.normal(size=17))
+        ranges = view.boundary - view.camera
+        noisy = view.camera + ranges * (1.0 + waves)[:, None]
+        blurred.append(replace(view, boundary=noisy, sigmas=3.0 * view.sigmas))
+    found, _ = _adjusted(blurred)
+    left = np.rad2deg([c.turn for c in found.corrections] - turned)
+    assert np.sqrt(np.mean(left**2)) < 1.5
+
+
 def test_a_scale_that_changes_slowly_is_followed():
     """It is right at the beginning, which is what is asked for; 8 % off after a dozen metres."""
     share = np.linspace(0.0, 0.08, COUNT - 1)

@@ -138,18 +138,24 @@ def test_rooms_that_end_without_a_wall_have_an_opening():
 
 
 def test_leaks_of_layouts_that_tell_no_doors_are_a_door():
-    # A closet behind the door makes the boundary leak by 0.6.
-    leaking = [
-        RECTANGLE[[0, 1]],
-        np.array([[2.0, -0.3], [2.6, -0.3], [2.6, 0.3], [2.0, 0.3]]),
-        RECTANGLE[[2, 3]],
-    ]
-    ring = np.concatenate(leaking)
-    views = [replace(view, spans=None) for view in _views(ring, SPOTS)]
+    views = _leaking_views(SPOTS)
     other = (_shape(RECTANGLE + APART), [])
     (door,) = _found([(_shape(RECTANGLE), views), other])
     assert (door.kind, door.sources) == ("door", ("leak",))
     assert np.sort(door.segment[:, 1]) == pytest.approx([-0.3, 0.3], abs=0.12)
+
+
+def test_a_leak_far_away_is_an_error():
+    far = [[-1.5, 0.2], [-1.2, 0.0]]
+    other = (_shape(RECTANGLE + APART), [])
+    assert _found([(_shape(RECTANGLE), _leaking_views(far)), other]) == ()
+
+
+def _leaking_views(spots):
+    """Views that tell no doors; a closet behind the door makes the boundary leak by 0.6."""
+    closet = np.array([[2.0, -0.3], [2.6, -0.3], [2.6, 0.3], [2.0, 0.3]])
+    ring = np.concatenate([RECTANGLE[[0, 1]], closet, RECTANGLE[[2, 3]]])
+    return [replace(view, spans=None) for view in _views(ring, spots)]
 
 
 def test_a_camera_elsewhere_says_nothing():

@@ -92,6 +92,36 @@ class _Walls:
     """Between the two faces of one wall."""
 
 
+@dataclass(frozen=True)
+class _Multiples:
+    """Of the configured sigmas of the odometry.
+
+    Attributes:
+        slip: of those of its positions.
+        bend: of those of its heading and scale, which bend and stretch all that follows.
+    """
+
+    slip: float
+    bend: float
+
+
+@dataclass(frozen=True, eq=False)
+class _Fit:
+    """What agrees best if the odometry errs by some multiples.
+
+    Attributes:
+        evidence: logarithm, that it errs so, but for a constant.
+        state: (V, 5) unknowns of the views.
+        walls: lines.
+        system: all residuals there; None to begin with.
+    """
+
+    evidence: float
+    state: FloatArray
+    walls: _Walls
+    system: _System | None
+
+
 def adjust(
     views: Sequence[RegisteredLayout],
     ways: FloatArray,
@@ -107,7 +137,7 @@ def adjust(
     Unknown are each camera's position, heading, the factor of its ranges and that of the odometry's
     step from it, which changes slowly, and the line of each wall. Columns near a wall of their room
     pull at it, robustly; from camera to camera the odometry holds, and the first one stays. How
-    much the odometry errs is taken from the data: the multiple of the configured sigmas with most
+    much the odometry errs is taken from the data: the multiples of the configured sigmas with most
     evidence (Laplace's approximation), so that true poses stay where they are.
 
     Args:
@@ -134,39 +164,79 @@ def adjust(
     state = np.array([(*c.shift, c.turn, np.log(c.factor), stretched) for c in start])
     cameras = np.array([view.camera for view in views])
     walk = _Walk(cameras, np.diff(ways), state[0, :3].copy(), stretch)
-    best, falling = -np.inf, 0
-    chosen, found = state, None
-    for multiple in config.odometry_multiples:
-        for _ in range(config.iterations):
-            system = _system(state, walls, walk, pieces, faces, multiple, config)
-            state, walls = _moved(state, walls, system.solve())
-        system = _system(state, walls, walk, pieces, faces, multiple, config)
-        evidence = system.evidence()
-        evidence -= 4 * (count - 1) * np.log(multiple)
-        if evidence > best:
-            best, falling = evidence, 0
-            chosen, found = state, system
-        else:
-            falling += 1
-        if falling == _FALLING:
-            break
-    assert found is not None
+    found = _most_evident(_Fit(-np.inf, state, walls, None), walk, pieces, faces, config)
+    assert found.system is not None
     middles = sorted({members[len(members) // 2] for members, _ in rooms if len(members)})
     return Adjusted(
         tuple(
             Correction((float(x), float(y)), float(turned), float(np.exp(factor)))
-            for x, y, turned, factor, _ in chosen
+            for x, y, turned, factor, _ in found.state
         ),
-        float(np.exp(chosen[0, 4])),
-        dict(zip(middles, found.covariances(_VIEW * np.array(middles)), strict=True)),
+        float(np.exp(found.state[0, 4])),
+        dict(zip(middles, found.system.covariances(_VIEW * np.array(middles)), strict=True)),
     )
 
 
 _VIEW = 5
 """Unknowns of a view: x, y, turn, log of the factor on its ranges, of that on the step from it."""
 
+
+def _most_evident(
+    begun: _Fit, walk: _Walk, pieces: Pieces, faces: Faces, config: AdjustConfig
+) -> _Fit:
+    """The fit with most evidence: first over common multiples, then over those of the bend."""
+
+    def fitted(near: _Fit, slip: float, bend: float, iterations: int) -> _Fit:
+        multiples = _Multiples(slip, bend)
+        return _fitted(near, walk, pieces, faces, multiples, iterations, config)
+
+    best = latest = begun
+    slip, falling = 1.0, 0
+    for multiple in config.odometry_multiples:
+        latest = fitted(latest, multiple, multiple, config.iterations)
+        if latest.evidence > best.evidence:
+            best, slip, falling = latest, multiple, 0
+        else:
+            falling += 1
+        if falling == _FALLING:
+            break
+    for factor in (_BEND_STEP, 1.0 / _BEND_STEP):
+        before, bend = best, slip * factor
+        for _ in range(_BEND_STEPS):
+            tried = fitted(best, slip, bend, (config.iterations + 1) // 2)
+            if tried.evidence <= best.evidence:
+                break
+            best, bend = tried, bend * factor
+        if best is not before:
+            break
+    return best
+
+
 _FALLING = 2
 """The evidence has one peak: after so many falls it is behind."""
+_BEND_STEP = 2.0
+_BEND_STEPS = 4
+"""Multiples of the bend are tried in such steps, at most so many: a factor of 16."""
+
+
+def _fitted(
+    near: _Fit,
+    walk: _Walk,
+    pieces: Pieces,
+    faces: Faces,
+    multiples: _Multiples,
+    iterations: int,
+    config: AdjustConfig,
+) -> _Fit:
+    state, walls = near.state, near.walls
+    for _ in range(iterations):
+        system = _system(state, walls, walk, pieces, faces, multiples, config)
+        state, walls = _moved(state, walls, system.solve())
+    system = _system(state, walls, walk, pieces, faces, multiples, config)
+    steps = len(state) - 1
+    # Two sigmas of a step are of slip, two of bend.
+    evidence = system.evidence() - 2 * steps * np.log(multiples.slip * multiples.bend)
+    return _Fit(float(evidence), state, walls, system)
 
 
 def _walls_of(rings: Sequence[FloatArray], gap: float) -> _Walls:
@@ -196,13 +266,13 @@ def _system(
     walk: _Walk,
     pieces: Pieces,
     faces: Faces,
-    multiple: float,
+    multiples: _Multiples,
     config: AdjustConfig,
 ) -> _System:
     """All residuals, linearised."""
     system = _System(state.size + 2 * len(walls.angle) + 1)
     _add_walls(system, state, walls, walk.cameras, pieces, config)
-    _add_odometry(system, state, walk, multiple, config)
+    _add_odometry(system, state, walk, multiples, config)
     _add_faces(system, state.size, walls, faces, config)
     return system
 
@@ -320,14 +390,14 @@ def _add_odometry(
     system: _System,
     state: FloatArray,
     walk: _Walk,
-    multiple: float,
+    multiples: _Multiples,
     config: AdjustConfig,
 ) -> None:
     count = len(state)
     step = np.diff(walk.cameras, axis=0)
     # A random walk: variances grow with the way.
     way = np.sqrt(np.maximum(walk.steps, _SHORTEST_CH))
-    weight = 1.0 / (multiple * config.odometry_ch * way)
+    weight = 1.0 / (multiples.slip * config.odometry_ch * way)
     before, after = np.arange(count - 1), np.arange(1, count)
     stretch = np.exp(state[:-1, 4])
     c, s = stretch * np.cos(state[:-1, 2]), stretch * np.sin(state[:-1, 2])
@@ -340,7 +410,7 @@ def _add_odometry(
         jacobian = np.stack([-ones, ones, by_turn[:, k], -turned[:, k]], axis=1)
         _add(system, columns, weight[:, None] * jacobian, weight * slip[:, k])
     for unknown, sigma in ((2, np.deg2rad(config.odometry_deg)), (4, config.odometry_scale)):
-        weight = 1.0 / (multiple * sigma * way)
+        weight = 1.0 / (multiples.bend * sigma * way)
         columns = _VIEW * np.stack([before, after], axis=1) + unknown
         change = state[1:, unknown] - state[:-1, unknown]
         _add(system, columns, np.stack([-weight, weight], axis=1), weight * change)

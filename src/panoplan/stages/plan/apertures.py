@@ -253,7 +253,7 @@ def _leaking(
     told = np.hypot(*(gaze.view.boundary - gaze.view.camera).T)
     with np.errstate(invalid="ignore"):
         beyond = told > gaze.range + np.maximum(config.leak_ch, config.leak_share * gaze.range)
-    beyond &= gaze.range > config.nearest_ch
+    beyond &= (config.nearest_ch < gaze.range) & (gaze.range < config.farthest_ch)
     for wall in np.unique(gaze.wall[beyond]):
         columns = np.flatnonzero(beyond & (gaze.wall == wall))
         order = columns[np.argsort(gaze.at[columns])]
