@@ -750,7 +750,7 @@ class MisplacedConfig:
         high=100.0,
     )
     min_gain: float = _setting(
-        6.0, "Evidence that it takes to doubt where views stand.", unit="nats", low=0.0, high=100.0
+        7.0, "Evidence that it takes to doubt where views stand.", unit="nats", low=0.0, high=100.0
     )
     margin: float = _setting(
         4.0,
