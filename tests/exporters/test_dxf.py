@@ -1,6 +1,7 @@
 """DXF read back by ezdxf."""
 
 import io
+import itertools
 import sys
 from dataclasses import replace
 
@@ -14,6 +15,7 @@ from panoplan.errors import InputError, MissingExtraError
 from panoplan.exporters.dxf import plan_dxf
 
 ezdxf = pytest.importorskip("ezdxf", reason="the extra 'export' is not installed")
+bbox = pytest.importorskip("ezdxf.bbox")
 
 
 def read(made):
@@ -60,6 +62,33 @@ def test_dimensions_measure_the_walls(angle):
         inside = np.array(dimension.dxf.defpoint)[:2]
         x, y = wall.b - wall.a
         assert np.dot(inside - wall.a, [-y, x]) > 0
+
+
+def test_lengths_have_a_decimal_point():
+    document = read(plan())
+    (first, *_) = of(document, "DIMENSION", "A-ANNO-DIMS")
+    assert first.override().get("dimdsep") == ord(".")
+    told = [item.plain_text() for item in first.get_geometry_block().query("MTEXT")]
+    assert told == [f"{first.get_measurement():.2f}"]
+
+
+def test_names_lie_clear_of_the_dimensions_in_large_and_in_small_rooms():
+    document = read(plan((square(0, 0, 4.0), square(5, 0, 0.9)), names=("Hall", "Closet")))
+    styles = [item.dxf.dimstyle for item in of(document, "DIMENSION", "A-ANNO-DIMS")]
+    assert styles == ["PANOPLAN"] * 4 + ["PANOPLAN-SMALL"] * 4
+    lettering = [
+        item
+        for dimension in of(document, "DIMENSION", "A-ANNO-DIMS")
+        for item in dimension.get_geometry_block().query("MTEXT")
+    ]
+    boxes = bounding_boxes([*of(document, "TEXT", "A-AREA-IDEN"), *lettering])
+    for one, other in itertools.combinations(boxes, 2):
+        assert not one.intersects(other)
+
+
+def bounding_boxes(entities):
+    boxes = [bbox.extents([entity]) for entity in entities]
+    return [shapely.box(*box.extmin.vec2, *box.extmax.vec2) for box in boxes]
 
 
 def test_a_storey_has_its_own_layers():

@@ -17,9 +17,9 @@ from panoplan.config import Config
 from panoplan.errors import InputError, MissingExtraError
 from panoplan.exporters.export import TEXEL_M
 from panoplan.exporters.model.glb import plan_glb
-from panoplan.exporters.model.photos import Photo
+from panoplan.exporters.model.photos import NADIR_DEG, Photo
 from panoplan.exporters.model.surfaces import Surface, plan_surfaces
-from panoplan.exporters.model.texture import NADIR_DEG, pictures, read_photos
+from panoplan.exporters.model.texture import pictures, read_photos
 from panoplan.formats.atomic import make_folder, write_bytes
 from panoplan.formats.depth import read_depth
 from panoplan.formats.panoramas import find_panoramas

@@ -6,13 +6,14 @@ import io
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import shapely
 
 from panoplan.errors import MissingExtraError
-from panoplan.exporters.labels import label_place, printable
+from panoplan.exporters.labels import RoomLabel, label_place, printable, room_label
 from panoplan.exporters.sheet.dimensions import wall_length
 from panoplan.exporters.storeys import (
     Storey,
@@ -42,17 +43,38 @@ LAYERS = {
 
 _METRES = 6
 _BY_LAYER = 256
-_DIMENSION_STYLE = "PANOPLAN"
-_DIMENSION_OFFSET_M = 0.15
-_TEXT_M = 0.10
 _SYMBOL_M = 0.05
+_NAME_EM_M = (0.06, 0.2)
+"""Font sizes of rooms' names, least and largest; capitals are 0.7 as high."""
+
+_CAPITAL_EM = 0.7
+
+
+@dataclass(frozen=True)
+class _Lettering:
+    """A dimension style: heights and distances in metres."""
+
+    style: str
+    text: float
+    offset: float
+
+    @property
+    def band(self) -> float:
+        """How far from a wall its dimension reaches."""
+        return self.offset + self.text
+
+
+_LARGE = _Lettering("PANOPLAN", 0.10, 0.15)
+_SMALL = _Lettering("PANOPLAN-SMALL", 0.045, 0.07)
+"""For rooms whose name would have no space between dimensions of the other."""
 
 
 def plan_dxf(plan: FloorPlan) -> bytes:
     """A plan as DXF R2018 in metres, in the plan frame; the same plan gives the same bytes.
 
     Each room is a closed LWPOLYLINE (holes too) on A-AREA with its name and area on A-AREA-IDEN,
-    each wall face a LINE on A-WALL with an aligned DIMENSION, the bodies of shared walls a HATCH
+    each wall face a LINE on A-WALL with an aligned DIMENSION (in small rooms of the style
+    PANOPLAN-SMALL, else PANOPLAN), the bodies of shared walls a HATCH
     on A-WALL-PATT, doors, openings and windows closed LWPOLYLINEs through their wall. A plan of
     several storeys has a set of layers for each, ending in -L0, -L1.
 
@@ -67,7 +89,8 @@ def plan_dxf(plan: FloorPlan) -> bytes:
     floors = metric_storeys(plan)
     with _reproducible():
         document = ezdxf.new("R2018", units=_METRES)
-        _dimension_style(document)
+        for lettering in (_LARGE, _SMALL):
+            _dimension_style(document, lettering)
         for floor in floors:
             _draw(document, floor, "" if len(floors) == 1 else f"-L{floor.level}")
         stream = io.StringIO()
@@ -88,16 +111,17 @@ def _reproducible() -> Iterator[None]:
         ezdxf.options.write_fixed_meta_data_for_testing = before
 
 
-def _dimension_style(document: Drawing) -> None:
-    style: Any = document.dimstyles.new(_DIMENSION_STYLE)
-    style.set_tick(size=0.04)
-    style.dxf.dimtxt = _TEXT_M
-    style.dxf.dimgap = 0.02
+def _dimension_style(document: Drawing, lettering: _Lettering) -> None:
+    style: Any = document.dimstyles.new(lettering.style)
+    style.set_tick(size=0.4 * lettering.text)
+    style.dxf.dimtxt = lettering.text
+    style.dxf.dimgap = 0.2 * lettering.text
     style.dxf.dimexe = 0.0
     style.dxf.dimexo = 0.0
     style.dxf.dimse1 = style.dxf.dimse2 = 1
     style.dxf.dimclrd = style.dxf.dimclrt = _BY_LAYER
     style.dxf.dimdec = 2
+    style.dxf.dimdsep = ord(".")
     style.dxf.dimzin = 0
     style.dxf.dimtad = 0
     style.dxf.dimtih = style.dxf.dimtoh = 0
@@ -137,10 +161,12 @@ def _draw_room(space: Any, room: Room, on: Any) -> None:
     for part in shapely.get_parts(area):
         for ring in (part.exterior, *part.interiors):
             space.add_lwpolyline(_points(ring), close=True, dxfattribs=on("A-AREA"))
-    x, y = label_place(area)
-    for line, text in enumerate((plain(room.name), f"{area.area:.2f} m²")):
-        words = space.add_text(text, height=_TEXT_M * 1.5, dxfattribs=on("A-AREA-IDEN"))
-        words.set_placement((x, y - 0.25 * line), align=_middle())
+    label, lettering = _label(area, plain(room.name))
+    height = _CAPITAL_EM * label.size_pt
+    x, y = label.position
+    for line, text in enumerate(label.lines):
+        words = space.add_text(text, height=height, dxfattribs=on("A-AREA-IDEN"))
+        words.set_placement((x, y + (0.8 - 1.6 * line) * height), align=_middle())
     for wall in room.walls:
         space.add_line(wall.a, wall.b, dxfattribs=on("A-WALL"))
         if wall_length(wall) < 1e-6:
@@ -151,11 +177,25 @@ def _draw_room(space: Any, room: Room, on: Any) -> None:
         made = space.add_aligned_dim(
             p1=tuple(ends[0]),
             p2=tuple(ends[1]),
-            distance=_DIMENSION_OFFSET_M if rightwards else -_DIMENSION_OFFSET_M,
-            dimstyle=_DIMENSION_STYLE,
+            distance=lettering.offset if rightwards else -lettering.offset,
+            dimstyle=lettering.style,
             dxfattribs=on("A-ANNO-DIMS"),
         )
         made.render()
+
+
+def _label(area: Any, name: str) -> tuple[RoomLabel, _Lettering]:
+    """A room's name and area, clear of its dimensions where it can be, and their lettering."""
+    figure, nothing = f"{area.area:.2f} m²", np.empty((0, 2))
+    for lettering, band in ((_LARGE, _LARGE.band), (_SMALL, _SMALL.band), (_SMALL, 0.0)):
+        inside = area.buffer(-band)
+        least = _NAME_EM_M[1] / 2 if lettering is _LARGE else _NAME_EM_M[0]
+        if not inside.is_empty:
+            sizes = (least, _NAME_EM_M[1])
+            label = room_label(inside, name, figure, 1.0, sizes, nothing, wrap=False)
+            if label is not None:
+                return label, lettering
+    return RoomLabel(label_place(area), (name, figure), _NAME_EM_M[0]), _SMALL
 
 
 def _middle() -> Any:

@@ -89,7 +89,9 @@ def _glb(plan: FloorPlan, options: ExportOptions) -> Files:
 def _html(plan: FloorPlan, options: ExportOptions) -> Files:
     from panoplan.exporters.report.page import report_html
 
-    model = _model(plan, options, _REPORT_TEXEL_M, _REPORT_PX, lambda done, total: None)
+    def model() -> bytes:
+        return _model(plan, options, _REPORT_TEXEL_M, _REPORT_PX, lambda done, total: None)
+
     page = report_html(plan, options.title, options.images, model, options.progress)
     return {"report.html": page}
 

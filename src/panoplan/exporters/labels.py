@@ -51,6 +51,8 @@ def room_label(
     points_per_unit: float,
     sizes_pt: tuple[float, float],
     cameras: FloatArray,
+    *,
+    wrap: bool = True,
 ) -> RoomLabel | None:
     """The room's name over its area, wrapped, sized and placed so that it fits.
 
@@ -61,13 +63,14 @@ def room_label(
         points_per_unit: printer's points a plan unit in the drawing.
         sizes_pt: least font size that can be read, and the largest.
         cameras: (K, 2) marks that the label should not hide.
+        wrap: whether the name may take more than one line.
 
     Returns:
         The label in its largest wrapping that fits, or None where none is readable.
     """
     best: RoomLabel | None = None
     places = _places(area)
-    for wrapped in _wrappings(name):
+    for wrapped in _wrappings(name) if wrap else [(name,)]:
         lines = (*wrapped, figure)
         size, fitting = _fitting(area, places, lines, points_per_unit, sizes_pt)
         if len(fitting) and (best is None or size > best.size_pt + 0.1):

@@ -1,14 +1,48 @@
-"""Turning an equirectangular image."""
+"""Colours of an equirectangular image along rays, and the image turned."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy.ndimage import map_coordinates
 
 from panoplan.geometry.sphere import FloatArray, column_heading, rays
+
+
+def sampled(image: NDArray[np.uint8], directions: FloatArray) -> FloatArray:
+    """What a panorama shows along rays, interpolated linearly, around the circle.
+
+    Args:
+        image: (H, W, C), H ≥ 2.
+        directions: (N, 3) of any length, camera frame (x right, y down, z forward).
+
+    Returns:
+        (N, C), 0-255.
+    """
+    return np.asarray(_sampled(image, np.ascontiguousarray(directions)))
+
+
+@njit(cache=True, nogil=True)
+def _sampled(image, directions):
+    height, width, channels = image.shape
+    out = np.empty((len(directions), channels))
+    for n in range(len(directions)):
+        x, y, z = directions[n]
+        column = (np.arctan2(x, z) / (2 * np.pi) + 0.5) * width - 0.5
+        row = (0.5 + np.arctan2(y, np.hypot(x, z)) / np.pi) * height - 0.5
+        row = min(max(row, 0.0), height - 1.0)
+        left, upper = np.floor(column), min(np.floor(row), height - 2.0)
+        u, v = column - left, row - upper
+        i, j = int(upper), int(left) % width
+        k = (j + 1) % width
+        for c in range(channels):
+            top = image[i, j, c] * (1 - u) + image[i, k, c] * u
+            bottom = image[i + 1, j, c] * (1 - u) + image[i + 1, k, c] * u
+            out[n, c] = top * (1 - v) + bottom * v
+    return out
 
 
 def turned(image: NDArray[Any], cam_from_new: FloatArray) -> NDArray[Any]:

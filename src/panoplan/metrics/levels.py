@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.plan import Aperture, FloorPlan
@@ -42,6 +41,9 @@ def true_levels(plan: FloorPlan, truth: GroundTruth) -> Mapping[int, int]:
     Returns:
         For each storey of the plan a true one, or `UNKNOWN`; 0 for all where all is one.
     """
+    # It takes longer to import than most exports, which need only `aperture_level`, to write.
+    from scipy.optimize import linear_sum_assignment
+
     ours = sorted({room.level for room in plan.rooms})
     if truth.plan.levels is None:
         return dict.fromkeys(ours, 0)

@@ -40,7 +40,7 @@ def test_it_is_used_as_people_use_it(tmp_path):
     made = replace(made, rooms=(replace(made.rooms[0], name=NAME),))
     files = write_panoramas(tmp_path, made, width=256)
     model = plan_glb(made, plan_surfaces(made), {})
-    (tmp_path / "report.html").write_bytes(report_html(made, "A flat", files, model))
+    (tmp_path / "report.html").write_bytes(report_html(made, "A flat", files, lambda: model))
     picture = tmp_path / "report.png"
     done = node("browser.mjs", str(tmp_path / "report.html"), str(picture), chromium)
     assert done.returncode == 0, done.stderr

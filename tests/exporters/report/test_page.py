@@ -31,7 +31,7 @@ class Page(HTMLParser):
 
 
 def page_of(made, title="Flat", images=None, model=b"glTF"):
-    text = report_html(made, title, images or {}, model).decode("utf-8")
+    text = report_html(made, title, images or {}, lambda: model).decode("utf-8")
     page = Page(text)
     scripts = [part.strip() for part in page.content["script"] if part.strip()]
     return text, page, json.loads(scripts[0]), scripts[-1]
@@ -106,7 +106,7 @@ def test_300_noisy_panoramas_stay_below_25_mb(tmp_path):
     trajectory = tuple(replace(pose, id=f"k{n}") for n in range(300))
     made = replace(painted_plan(), trajectory=trajectory)
     files = {pose.id: path for pose in trajectory}
-    text = report_html(made, "x", files, b"x" * (3 * 2**20))
+    text = report_html(made, "x", files, lambda: b"x" * (3 * 2**20))
     assert len(text) < 25 * 10**6
 
 
@@ -116,4 +116,4 @@ def test_a_large_model_is_left_out():
 
 def test_a_plan_in_camera_heights_is_refused():
     with pytest.raises(InputError, match="camera heights"):
-        report_html(plan(unit="ch"), "x", {}, b"")
+        report_html(plan(unit="ch"), "x", {}, bytes)

@@ -12,10 +12,18 @@ from numpy.typing import NDArray
 from panoplan.exporters.bodies import interval_on
 from panoplan.exporters.storeys import Storey, room_area
 from panoplan.geometry.hits import first_hits
+from panoplan.geometry.panorama import sampled
 from panoplan.types.arrays import BoolArray, FloatArray
 from panoplan.types.plan import PlanPose
 
+NADIR_DEG = (52.0, 62.0)
+"""Below the horizon, from where the tripod or hand may be seen: fades out between the two."""
+
+_UNCLEAR = 4
+"""Power of that fading: another camera's view is soon the better one."""
+
 _RAYS = 2048
+_GRAZING = 0.08
 _SLACK_M = 0.04
 _SLACK_SHARE = 0.02
 
@@ -43,26 +51,35 @@ class Photo:
     def sample(self, directions: FloatArray) -> FloatArray:
         """(N, 3) colours 0-255 along (N, 3) directions of the model frame, bilinear."""
         x, y, z = directions.T
-        azimuth = np.arctan2(x, -z) - self.heading
-        elevation = np.arctan2(y, np.hypot(x, z))
-        height, width = self.pixels.shape[:2]
-        pixels = self.pixels.reshape(-1, 3)
-        column = (azimuth / (2 * np.pi) + 0.5) * width - 0.5
-        row = np.clip((0.5 - elevation / np.pi) * height - 0.5, 0.0, height - 1.0)
-        left, upper = np.floor(column), np.minimum(np.floor(row), height - 2)
-        u, v = (column - left)[:, None], (row - upper)[:, None]
-        at, j = upper.astype(np.intp) * width, left.astype(np.intp) % width
-        k = (j + 1) % width
-        top = pixels[at + j] * (1 - u) + pixels[at + k] * u
-        bottom = pixels[at + width + j] * (1 - u) + pixels[at + width + k] * u
-        return np.asarray(top * (1 - v) + bottom * v)
+        sine, cosine = np.sin(self.heading), np.cos(self.heading)
+        # Of the camera: x right, y down, z forward.
+        return sampled(self.pixels, np.stack([x * cosine + z * sine, -y, x * sine - z * cosine], 1))
 
-    def sees(self, points: FloatArray) -> BoolArray:
-        """(N,) whether nothing stands between the camera and (N, 3) points, over the floor."""
-        x, _, z = (points - self.place).T
-        ray = np.rint(np.arctan2(x, -z) / (2 * np.pi) * _RAYS).astype(np.intp) % _RAYS
-        distance = np.hypot(x, z)
-        return np.asarray(distance <= self.reach[ray] * (1 + _SLACK_SHARE) + _SLACK_M)
+    def worth(self, points: FloatArray, normal: FloatArray) -> FloatArray:
+        """How well it shows points of a surface: the solid angle of a square metre there.
+
+        Args:
+            points: (N, 3) model frame.
+            normal: (3,) of the surface, unit, towards where it is seen from.
+
+        Returns:
+            (N,) sr, 0 where it is too grazing, where something stands between over the floor, and
+            in the cone below the camera.
+        """
+        ray = points - self.place
+        distance = np.linalg.norm(ray, axis=1)
+        facing = -(ray @ normal) / distance
+        depression = np.degrees(np.arcsin(np.clip(-ray[:, 1] / distance, -1, 1)))
+        first, last = NADIR_DEG
+        clear = np.clip((last - depression) / (last - first), 0.0, 1.0) ** _UNCLEAR
+        shown = (facing > _GRAZING) & self._sees(ray)
+        return np.asarray(np.where(shown, clear * facing / distance**2, 0.0))
+
+    def _sees(self, ray: FloatArray) -> BoolArray:
+        """(N,) whether nothing stands in the way of (N, 3) rays to their ends, over the floor."""
+        x, _, z = ray.T
+        heading = np.rint(np.arctan2(x, -z) / (2 * np.pi) * _RAYS).astype(np.intp) % _RAYS
+        return np.asarray(np.hypot(x, z) <= self.reach[heading] * (1 + _SLACK_SHARE) + _SLACK_M)
 
 
 def free_space(floor: Storey) -> Any:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from panoplan.exporters.model.surfaces import Surface, in_model
 from panoplan.exporters.storeys import metric_storeys
 from panoplan.formats.image import read_panorama
 from panoplan.types.arrays import FloatArray
-from panoplan.types.plan import FloorPlan
+from panoplan.types.plan import FloorPlan, PlanPose
 
 EDGE = 2
 """Texels beyond the edges of a surface, so that no colour bleeds in."""
@@ -25,15 +26,11 @@ SMALLEST_PX = (32, 16)
 """Of a panorama that is shown; one that a network looks at has to be larger."""
 
 _PHOTOS_BYTES = 1.5 * 2**30
+_THREADS = 4
 _VIEWS = 4
 _FARTHEST_M = 8.0
 _AFAR = 1e-3
 _COARSE = 6
-_GRAZING = 0.08
-_UNCLEAR = 4
-"""Power of that fading: another camera's view is soon the better one."""
-NADIR_DEG = (52.0, 62.0)
-"""Below the horizon, from where the tripod or hand may be seen: fades out between the two."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -69,16 +66,24 @@ def read_photos(
     height = plan.camera_height_m or 0.0
     # Three bytes a pixel, half as many rows as columns.
     widest = min(widest, int(np.sqrt(_PHOTOS_BYTES / 1.5 / max(len(files), 1))))
-    found = []
+    found: list[tuple[PlanPose, FloatArray, FloatArray]] = []
     for floor in floors:
         free = free_space(floor)
         for camera in floor.cameras:
             reach = reach_of(camera, free) if camera.id in files else None
             if reach is not None:
                 place = in_model(camera.position[None], rises[floor.level] + height)[0]
-                pixels = read_panorama(files[camera.id], widest=widest, smallest=SMALLEST_PX)
-                found.append(Photo(camera.id, camera.room, place, camera.heading, pixels, reach))
-    return tuple(found)
+                found.append((camera, place, reach))
+
+    def pixels_of(camera: PlanPose) -> NDArray[np.uint8]:
+        return read_panorama(files[camera.id], widest=widest, smallest=SMALLEST_PX)
+
+    with ThreadPoolExecutor(_THREADS) as pool:
+        pixels = pool.map(pixels_of, (camera for camera, _, _ in found))
+        return tuple(
+            Photo(camera.id, camera.room, place, camera.heading, picture, reach)
+            for (camera, place, reach), picture in zip(found, pixels, strict=True)
+        )
 
 
 def pictures(
@@ -99,11 +104,13 @@ def pictures(
         progress: called with (surfaces done, surfaces in all).
     """
     made = {}
-    for number, surface in enumerate(surfaces):
-        picture = _picture(surface, photos, texel_m)
-        if picture is not None:
-            made[surface.id] = picture
-        progress(number + 1, len(surfaces))
+    # Nearly all of the work lets threads run beside one another.
+    with ThreadPoolExecutor(_THREADS) as pool:
+        found = pool.map(lambda surface: _picture(surface, photos, texel_m), surfaces)
+        for number, (surface, picture) in enumerate(zip(surfaces, found, strict=True)):
+            if picture is not None:
+                made[surface.id] = picture
+            progress(number + 1, len(surfaces))
     return made
 
 
@@ -149,16 +156,9 @@ def _near(surface: Surface, photos: Sequence[Photo]) -> list[Photo]:
 
 def _weights(surface: Surface, photo: Photo, points: FloatArray) -> FloatArray:
     """(N,) how well a photo shows points of a surface: the solid angle of a texel, 0 if not."""
-    ray = points - photo.place
-    distance = np.linalg.norm(ray, axis=1)
-    facing = -(ray @ surface.normal) / distance
-    depression = np.degrees(np.arcsin(np.clip(-ray[:, 1] / distance, -1, 1)))
-    first, last = NADIR_DEG
-    clear = np.clip((last - depression) / (last - first), 0.0, 1.0) ** _UNCLEAR
-    shown = (facing > _GRAZING) & photo.sees(points)
     # Other rooms' cameras look in through doors: they help where its own see nothing.
     trust = 1.0 if photo.room == surface.room or surface.kind == "reveal" else _AFAR
-    return np.asarray(np.where(shown, trust * clear * facing / distance**2, 0.0))
+    return trust * photo.worth(points, surface.normal)
 
 
 def _view(

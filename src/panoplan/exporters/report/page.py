@@ -32,7 +32,7 @@ def report_html(
     plan: FloorPlan,
     title: str,
     images: Mapping[str, Path],
-    model: bytes,
+    model: Callable[[], bytes],
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> bytes:
     """A report: plan, model, panoramas, scale, what was left out; offline, at most 25 MB.
@@ -43,7 +43,8 @@ def report_html(
         plan: metric.
         title: of the report.
         images: panorama by keyframe, as many as there are; made smaller to fit.
-        model: a GLB of the rooms; left out where it is larger than 3 MiB.
+        model: makes a GLB of the rooms, which is left out where it is larger than 3 MiB; called
+            while panoramas are made.
         progress: called with (panoramas done, panoramas in all).
 
     Raises:
@@ -55,16 +56,17 @@ def report_html(
         own.joinpath(name).read_text("utf-8") for name in ("report.js", "report.css", "NOTICES.txt")
     )
     data["notices"] = notices
-    data["model"] = _base64(model) if len(model) <= _MODEL_BYTES else None
     shown = [pose.id for pose in plan.trajectory if pose.id in images]
     limit = min(_PANORAMA_BYTES, _PANORAMAS_BYTES // max(len(shown), 1))
     data["panoramas"] = {}
     # Most of the work is in Pillow, which lets threads run beside one another.
     with ThreadPoolExecutor(_THREADS) as pool:
         made = pool.map(lambda name: _small_jpeg(images[name], limit), shown)
+        rooms = model()
         for number, (name, picture) in enumerate(zip(shown, made, strict=True)):
             data["panoramas"][name] = _base64(picture)
             progress(number + 1, len(shown))
+    data["model"] = _base64(rooms) if len(rooms) <= _MODEL_BYTES else None
     return _page(data, script, style).encode("utf-8")
 
 
