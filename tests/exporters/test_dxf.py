@@ -102,11 +102,26 @@ def test_a_storey_has_its_own_layers():
 
 
 def test_shared_walls_are_hatched():
-    (hatch,) = of(read(flat(openings=())), "HATCH", "A-WALL-PATT")
+    (hatch,) = of(read(flat(doors=(), openings=())), "HATCH", "A-WALL-PATT")
     rings = [[(x, y) for x, y, _ in path.vertices] for path in hatch.paths]
     # 0.2 m along 3 m between LEFT and RIGHT, and along 5.8 m below TOP.
     area = 0.2 * 3.0 + 0.2 * 6.0 + 0.2 * 1.8
     assert sum(shapely.Polygon(ring).area for ring in rings) == pytest.approx(area, rel=0.05)
+
+
+def test_no_wall_is_hatched_through_a_door():
+    document = read(flat())
+    hatches = of(document, "HATCH", "A-WALL-PATT")
+    solid = [
+        shapely.Polygon([(x, y) for x, y, _ in path.vertices])
+        for hatch in hatches
+        for path in hatch.paths
+    ]
+    doors = [
+        shapely.Polygon(item.get_points("xy")) for item in of(document, "LWPOLYLINE", "A-DOOR")
+    ]
+    assert doors
+    assert not shapely.union_all(solid).intersects(shapely.union_all(doors))
 
 
 def test_names_are_text_and_no_codes():

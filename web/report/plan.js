@@ -21,13 +21,14 @@ function draw(storey, data, told, showPanorama) {
   node.append(svg("path", { d: path(storey.walls), class: "solid", "aria-hidden": "true" }));
   for (const room of storey.rooms) node.append(drawRoom(room, told));
   for (const [kind, items] of Object.entries(storey.apertures)) {
-    for (const [a, b] of items) {
+    for (const { segment: [a, b], through } of items) {
       const ends = { x1: a[0], y1: -a[1], x2: b[0], y2: -b[1] };
-      node.append(svg("line", { ...ends, class: "gap", "aria-hidden": "true" }));
+      const width = Math.max(through, 0.05) + 0.04;
+      node.append(svg("line", { ...ends, class: "gap", "stroke-width": width, "aria-hidden": "true" }));
       node.append(svg("line", { ...ends, class: kind, "aria-hidden": "true" }));
     }
   }
-  for (const room of storey.rooms) node.append(label(room));
+  for (const room of storey.rooms) if (room.label) node.append(label(room.label));
   for (const camera of storey.cameras) node.append(drawCamera(camera, data, showPanorama));
   return node;
 }
@@ -71,14 +72,11 @@ function describe(room) {
   ];
 }
 
-function label(room) {
-  const [x, y] = room.label;
-  const size = Math.min(0.32, room.width / Math.max(4, 0.62 * room.name.length));
-  const at = { x, "text-anchor": "middle", "aria-hidden": "true", "font-size": size };
-  return svg("g", { class: "label" }, [
-    svg("text", { ...at, y: -y - 0.1 * size }, room.name),
-    svg("text", { ...at, y: -y + 1.1 * size }, number(room.area, 1, " m²")),
-  ]);
+function label({ at: [x, y], lines, size }) {
+  const first = -y + (0.35 - 0.6 * (lines.length - 1)) * size;
+  return svg("g", { class: "label", "aria-hidden": "true" }, lines.map((line, row) =>
+    svg("text", { x, y: first + 1.2 * size * row, "text-anchor": "middle", "font-size": size }, line),
+  ));
 }
 
 function drawCamera(camera, data, showPanorama) {

@@ -74,9 +74,9 @@ def plan_dxf(plan: FloorPlan) -> bytes:
 
     Each room is a closed LWPOLYLINE (holes too) on A-AREA with its name and area on A-AREA-IDEN,
     each wall face a LINE on A-WALL with an aligned DIMENSION (in small rooms of the style
-    PANOPLAN-SMALL, else PANOPLAN), the bodies of shared walls a HATCH
-    on A-WALL-PATT, doors, openings and windows closed LWPOLYLINEs through their wall. A plan of
-    several storeys has a set of layers for each, ending in -L0, -L1.
+    PANOPLAN-SMALL, else PANOPLAN), the bodies of shared walls, less their doors and openings, a
+    HATCH on A-WALL-PATT, doors, openings and windows closed LWPOLYLINEs through their wall. A plan
+    of several storeys has a set of layers for each, ending in -L0, -L1.
 
     Raises:
         InputError: not metric or without rooms; MissingExtraError: ezdxf is not installed.
@@ -135,7 +135,14 @@ def _draw(document: Drawing, floor: Storey, suffix: str) -> None:
     def on(layer: str) -> dict[str, Any]:
         return {"layer": layer + suffix}
 
-    solid = inner_walls(floor)
+    shared = by_faces(floor)
+
+    def box(item: Aperture) -> Any:
+        return aperture_area(item, max(through(item, shared), _SYMBOL_M))
+
+    # A little more than the doors, so that no slivers stay.
+    doors = shapely.union_all([box(door).buffer(0.01, join_style="mitre") for door in floor.doors])
+    solid = inner_walls(floor).difference(doors)
     for part in shapely.get_parts(solid):
         if isinstance(part, shapely.Polygon) and not part.is_empty:
             hatch = space.add_hatch(color=_BY_LAYER, dxfattribs=on("A-WALL-PATT"))
@@ -144,7 +151,6 @@ def _draw(document: Drawing, floor: Storey, suffix: str) -> None:
                 hatch.paths.add_polyline_path(_points(ring), is_closed=True, flags=flags)
     for room in floor.rooms:
         _draw_room(space, room, on)
-    shared = by_faces(floor)
     kinds: tuple[tuple[str, tuple[Aperture, ...]], ...] = (
         ("A-DOOR", floor.doors),
         ("A-FLOR-OPNG", floor.openings),
@@ -152,8 +158,8 @@ def _draw(document: Drawing, floor: Storey, suffix: str) -> None:
     )
     for layer, items in kinds:
         for item in items:
-            box = aperture_area(item, max(through(item, shared), _SYMBOL_M))
-            space.add_lwpolyline(_points(box.exterior), close=True, dxfattribs=on(layer))
+            ring = _points(box(item).exterior)
+            space.add_lwpolyline(ring, close=True, dxfattribs=on(layer))
 
 
 def _draw_room(space: Any, room: Room, on: Any) -> None:

@@ -7,6 +7,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 import pytest
+import shapely
 from tests.exporters.model.painted import painted_plan, write_panoramas
 from tests.exporters.storeys import ODD_NAMES, flat, two_storeys
 from tests.metrics.plans import FLAT, plan, square
@@ -56,7 +57,7 @@ def test_it_holds_all_it_shows():
         "count": 3,
     }
     assert data["scale"]["curve"] == [[0.1, 3.0], [0.5, 1.25]]
-    assert "camera height, ± 2.0 %" in data["metres"]
+    assert "camera height: ± 2.0 %" in data["metres"]
     assert base64.b64decode(data["model"]) == b"glTF"
     assert "MIT" in data["notices"]
     assert len(text) < 3_000_000
@@ -94,6 +95,31 @@ def test_panoramas_are_made_to_fit(tmp_path):
     assert list(data["panoramas"]) == ["kf0", "kf1"]
     for image in data["panoramas"].values():
         assert base64.b64decode(image).startswith(b"\xff\xd8")
+
+
+def test_a_label_stays_in_its_room_and_off_the_cameras():
+    made = plan((*FLAT, square(20, 0, 0.3)), names=("Living room", "Bath", "Kitchen", "Closet"))
+    _, _, data, _ = page_of(made)
+    (storey,) = data["storeys"]
+    *rooms, closet = storey["rooms"]
+    for room in rooms:
+        label = room["label"]
+        assert "".join(label["lines"][:-1]).replace(" ", "") == room["name"].replace(" ", "")
+        assert label["lines"][-1].endswith(" m²")
+        half = 0.3 * label["size"] * max(map(len, label["lines"]))
+        ends = shapely.LineString(
+            [np.array(label["at"]) - (half, 0), np.array(label["at"]) + (half, 0)]
+        )
+        assert shapely.Polygon(room["rings"][0]).contains(ends)
+        for camera in storey["cameras"]:
+            assert ends.distance(shapely.Point(camera["position"])) > 0.1
+    assert closet["label"] is None
+
+
+def test_doors_go_through_their_walls():
+    _, _, data, _ = page_of(flat())
+    (door,) = data["storeys"][0]["apertures"]["doors"]
+    assert door["through"] == pytest.approx(0.2)
 
 
 def test_300_noisy_panoramas_stay_below_25_mb(tmp_path):

@@ -8,14 +8,25 @@ import numpy as np
 import shapely
 
 from panoplan.exporters.drawing import room_colours
-from panoplan.exporters.labels import label_place, printable
+from panoplan.exporters.labels import printable, room_label
+from panoplan.exporters.metres import metres_told
 from panoplan.exporters.sheet.dimensions import wall_length
 from panoplan.exporters.sheet.title import AREA_RULE
-from panoplan.exporters.storeys import Storey, bounds, inner_walls, metric_storeys, room_area
+from panoplan.exporters.storeys import (
+    Storey,
+    bounds,
+    by_faces,
+    inner_walls,
+    metric_storeys,
+    room_area,
+    through,
+)
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import FloorPlan, Room, ScaleEstimate
 
 _LONGEST_NAME = 200
+_LABEL_M = (0.12, 0.32)
+"""Font sizes of rooms' names on the plan, least and largest."""
 
 
 def report_data(plan: FloorPlan, title: str) -> dict[str, Any]:
@@ -28,16 +39,11 @@ def report_data(plan: FloorPlan, title: str) -> dict[str, Any]:
     colours = room_colours(plan.rooms)
     rooms = [room for floor in floors for room in floor.rooms]
     area = sum(float(room_area(room).area) for room in rooms)
-    metric = plan.metric
     return {
         "title": _name(title),
         "version": _name(plan.version),
         "summary": f"{len(rooms)} rooms, {area:.1f} m², {len(plan.trajectory)} keyframes",
-        "metres": (
-            "It is not known where the metres come from."
-            if metric is None
-            else f"Metres by {metric.source}, ± {100 * metric.sigma:.1f} % of all lengths together."
-        ),
+        "metres": metres_told(plan),
         "area_rule": AREA_RULE,
         "storeys": [_storey(floor, colours) for floor in floors],
         "missing": [
@@ -69,14 +75,22 @@ def _name(text: str) -> str:
 
 def _storey(floor: Storey, colours: dict[str, str]) -> dict[str, Any]:
     low, high = bounds(floor, np.eye(2))
+    shared = by_faces(floor)
+    cameras = np.array([camera.position for camera in floor.cameras]).reshape(-1, 2)
     kinds = {"doors": floor.doors, "openings": floor.openings, "windows": floor.windows}
     return {
         "name": floor.name,
         "bounds": _points(np.array([low, high])).ravel().tolist(),
         "walls": _rings(inner_walls(floor)),
-        "rooms": [_room(room, colours[room.id]) for room in floor.rooms],
+        "rooms": [_room(room, colours[room.id], cameras) for room in floor.rooms],
         "apertures": {
-            kind: [_points(item.segment).tolist() for item in items]
+            kind: [
+                {
+                    "segment": _points(item.segment).tolist(),
+                    "through": round(through(item, shared), 4),
+                }
+                for item in items
+            ]
             for kind, items in kinds.items()
         },
         "cameras": [
@@ -91,12 +105,9 @@ def _storey(floor: Storey, colours: dict[str, str]) -> dict[str, Any]:
     }
 
 
-def _room(room: Room, colour: str) -> dict[str, Any]:
+def _room(room: Room, colour: str, cameras: FloatArray) -> dict[str, Any]:
     area = room_area(room)
-    place = label_place(area)
-    level = shapely.LineString([(area.bounds[0], place[1]), (area.bounds[2], place[1])])
-    pieces = shapely.get_parts(area.intersection(level))
-    width = min(pieces, key=lambda piece: float(piece.distance(shapely.Point(place)))).length
+    label = room_label(area, _name(room.name), f"{area.area:.1f} m²", 1.0, _LABEL_M, cameras)
     return {
         "id": room.id,
         "name": _name(room.name),
@@ -106,8 +117,12 @@ def _room(room: Room, colour: str) -> dict[str, Any]:
         "perimeter": round(float(area.length), 4),
         "ceiling": room.ceiling_height,
         "rings": _rings(area),
-        "label": _points(place).tolist(),
-        "width": round(float(width), 3),
+        "label": label
+        and {
+            "at": _points(label.position).tolist(),
+            "lines": label.lines,
+            "size": round(label.size_pt, 4),
+        },
         "keyframes": [_name(keyframe) for keyframe in room.keyframes],
         "flags": [_name(flag) for flag in room.flags],
         "walls": [

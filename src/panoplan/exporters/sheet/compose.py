@@ -9,7 +9,8 @@ import shapely
 
 from panoplan.exporters.drawing import room_colours
 from panoplan.exporters.labels import RoomLabel, label_place, printable, room_label
-from panoplan.exporters.sheet.dimensions import OFFSET, dimensions
+from panoplan.exporters.metres import metres_told
+from panoplan.exporters.sheet.dimensions import BAND, dimensions
 from panoplan.exporters.sheet.layout import Placement, place
 from panoplan.exporters.sheet.marks import Mark, Shape, Sheet, Words
 from panoplan.exporters.sheet.title import Told, title_block
@@ -22,7 +23,7 @@ from panoplan.exporters.storeys import (
     through,
 )
 from panoplan.types.arrays import FloatArray
-from panoplan.types.plan import Aperture, FloorPlan, MetricScale
+from panoplan.types.plan import Aperture, FloorPlan
 
 INK = "#1D2127"
 SOLID = "#4A515B"
@@ -65,8 +66,7 @@ def _sheet(
 ) -> Sheet:
     labels, numbered = _labels(floor, placement)
     lengths, left_out = dimensions(floor, placement, labels)
-    notes = [] if plan.metric is None else [_metres(plan.metric)]
-    notes += numbered
+    notes = [metres_told(plan), *numbered]
     if left_out:
         notes.append(f"{left_out} lengths have no space here; plan.dxf has them all.")
     missing = [r for r in plan.rooms if r.polygon is None and r.level == floor.level]
@@ -94,11 +94,6 @@ def _sheet(
         "title": title_block(placement, told),
     }
     return Sheet(placement.paper, placement.denominator, told.title, layers)
-
-
-def _metres(metric: MetricScale) -> str:
-    share = f"± {100 * metric.sigma:.1f} % of every length together"
-    return f"Metres by {metric.source}: {share}; a wall's own ± is in plan.geojson."
 
 
 def _rings(area: object, placement: Placement) -> tuple[FloatArray, ...]:
@@ -215,7 +210,7 @@ def _flat(rings: Sequence[FloatArray]) -> shapely.Geometry:
 def _fitted(area: shapely.Geometry, name: str, figure: str) -> RoomLabel | None:
     """A label clear of the dimensions along the walls, or where it fits at all."""
     nothing = np.empty((0, 2))
-    for inside in (area.buffer(-OFFSET - 1.0), area):
+    for inside in (area.buffer(-BAND), area):
         if not inside.is_empty:
             label = room_label(inside, name, figure, 1 / _MM_PER_PT, _LABEL_PT, nothing)
             if label is not None:

@@ -16,11 +16,22 @@ from panoplan.exporters.storeys import Storey, room_area
 from panoplan.types.arrays import FloatArray
 from panoplan.types.plan import Wall
 
-OFFSET = 2.6
+_SIZES = (2.4, 1.7)
+"""Of the text, mm: the smaller where the larger has no space."""
+
+_OFFSET = 2.6
 """Between a wall's face and its dimension line, mm."""
 
-_SIZE = 1.7
+BAND = _OFFSET + 0.6 * _SIZES[0]
+"""How far from a wall's face its dimension reaches, mm."""
+
 _TICK = 0.7
+_APART = 0.4
+"""Between a dimension and other text, mm."""
+
+_BOLD = 1.15
+"""Of bold letters: how much wider they are."""
+
 _COLOUR = "#5B636E"
 
 
@@ -42,15 +53,18 @@ def dimensions(
     busy = shapely.union_all([text_box(words) for words in taken])
     inside = {wall.id: room_area(room) for room in floor.rooms for wall in room.walls}
     for wall in sorted(floor.walls.values(), key=wall_length, reverse=True):
-        line, text = _dimension(wall, placement)
-        box = text_box(text)
         space = shapely.Polygon(placement.on_paper(_corners(inside[wall.id])))
-        fits = wall_length(wall) * placement.mm_per_m >= width_em(text.text) * _SIZE + 2 * _TICK
-        if not fits or not space.covers(box) or busy.intersects(shapely.union(box, _stroke(line))):
+        for size in _SIZES:
+            line, text = _dimension(wall, placement, size)
+            box = text_box(text)
+            needed = width_em(text.text) * size + 2 * _TICK
+            fits = wall_length(wall) * placement.mm_per_m >= needed and space.covers(box)
+            if fits and not busy.intersects(shapely.union(box.buffer(_APART), _stroke(line))):
+                busy = shapely.union(busy, box)
+                marks += [line, text]
+                break
+        else:
             left_out += 1
-            continue
-        busy = shapely.union(busy, box)
-        marks += [line, text]
     return tuple(marks), left_out
 
 
@@ -67,7 +81,8 @@ def inward(wall: Wall) -> FloatArray:
 
 def text_box(words: Words) -> Any:
     """The shapely rectangle that a line of text takes on paper, by estimate."""
-    width, height = width_em(words.text) * words.size, 1.1 * words.size
+    width = width_em(words.text) * words.size * (_BOLD if words.bold else 1.0)
+    height = 1.1 * words.size
     shift = {"start": width / 2, "middle": 0.0, "end": -width / 2}[words.anchor]
     box = shapely.box(shift - width / 2, -height / 2, shift + width / 2, height / 2)
     turned = shapely.affinity.rotate(box, -words.angle_deg, origin=(0.0, 0.0))
@@ -84,13 +99,13 @@ def _stroke(line: Shape) -> Any:
     return shapely.MultiLineString(list(line.rings[:2]))
 
 
-def _dimension(wall: Wall, placement: Placement) -> tuple[Shape, Words]:
+def _dimension(wall: Wall, placement: Placement, size: float) -> tuple[Shape, Words]:
     text = f"{wall_length(wall):.2f}"
-    shift = inward(wall) * OFFSET / placement.mm_per_m
+    shift = inward(wall) * _OFFSET / placement.mm_per_m
     a, b = placement.on_paper(np.array([wall.a, wall.b]) + shift)
     along = (b - a) / max(float(np.hypot(*(b - a))), 1e-9)
     centre = (a + b) / 2
-    gap = along * min((width_em(text) + 0.6) * _SIZE, float(np.hypot(*(b - a)))) / 2
+    gap = along * min((width_em(text) + 0.6) * size, float(np.hypot(*(b - a)))) / 2
     slash = np.array([along[0] - along[1], along[0] + along[1]]) * _TICK / np.sqrt(2)
     lines = (
         np.array([a, centre - gap]),
@@ -104,5 +119,5 @@ def _dimension(wall: Wall, placement: Placement) -> tuple[Shape, Words]:
     place = (float(centre[0]), float(centre[1]))
     return (
         Shape(lines, closed=False, stroke=_COLOUR, width=0.13),
-        Words(place, text, _SIZE, angle_deg=readable, colour=_COLOUR),
+        Words(place, text, size, angle_deg=readable, colour=_COLOUR),
     )

@@ -20,7 +20,9 @@ AREA_RULE = (
 
 _INK = "#1D2127"
 _QUIET = "#5B636E"
-_NOTE = 1.9
+_NOTES = (2.3, 1.9)
+"""Sizes of notes, mm: the smaller where the larger is too much."""
+
 _LINE = 1.35
 _EM = 0.56
 
@@ -136,12 +138,16 @@ def _arrow(placement: Placement, told: Told, centre: FloatArray) -> list[Mark]:
 
 def _notes(notes: Sequence[str], left: float, right: float, top: float) -> list[Mark]:
     """Notes broken into lines, the last saying if there are more than fit."""
-    most = int((STRIP - 3.0) / (_NOTE * _LINE))
-    lines = [line for note in notes for line in wrap(note, int((right - left) / (_NOTE * _EM)))]
-    if len(lines) > most:
+    for size in _NOTES:
+        most = int((STRIP - 3.0) / (size * _LINE))
+        width = int((right - left) / (size * _EM))
+        lines = [line for note in notes for line in wrap(note, width)]
+        if len(lines) <= most:
+            break
+    else:
         lines = [*lines[: most - 1], f"… and {len(lines) - most + 1} more lines: rooms.csv"]
     return [
-        Words((left, top + 2.8 + k * _NOTE * _LINE), line, _NOTE, anchor="start", colour=_QUIET)
+        Words((left, top + 1.5 * size + k * size * _LINE), line, size, "start", colour=_QUIET)
         for k, line in enumerate(lines)
     ]
 
