@@ -654,7 +654,7 @@ class GroupingConfig:
         high=10.0,
     )
     around_views: int = _setting(
-        100,
+        64,
         "Views looked at together when a room is left; of a room of more, some spread evenly over "
         "it. At the end of the walk all are.",
         unit="views",

@@ -283,7 +283,7 @@ def _told(values: FloatArray) -> list[float | None]:
     return [float(value) if np.isfinite(value) else None for value in values]
 
 
-_WITHIN = 0.25
+_WITHIN = 0.4
 """Walls of a room err against one another by this share of what they err by in place, as the way
 between those who saw them is a part of the whole way: on simulated flats."""
 
