@@ -9,6 +9,7 @@ from typing import cast
 import numpy as np
 import shapely
 from contourpy import contour_generator
+from numba import njit
 from scipy import ndimage
 
 from panoplan.config import FusionConfig, OutlineConfig
@@ -233,6 +234,14 @@ def _through(piece: FloatArray) -> WallLine:
     return WallLine(middle, along, float(reach.min()), float(reach.max()))
 
 
+_CORNER_MARGIN_CH, _CORNER_MARGIN_SHARE = 0.07, 0.15
+"""Columns this near to a wall's ends may be of its neighbours."""
+_FEWEST_COLUMNS = 8
+"""Of 1024, of all views together."""
+_TRUST = 4.0
+_FINEST_CH = 0.004
+
+
 def _fitted(wall: WallLine, columns: _Columns, config: OutlineConfig) -> WallLine:
     """The wall moved and turned to the raw columns near it, robustly."""
     columns = columns.near(wall, 2 * config.fit_reach_ch)
@@ -246,58 +255,79 @@ def _fitted(wall: WallLine, columns: _Columns, config: OutlineConfig) -> WallLin
 
 def _fit(wall: WallLine, columns: _Columns, reach: float, config: OutlineConfig) -> WallLine | None:
     """One weighted least-squares fit; None where too few columns lie near."""
-    outward = wall.outward
-    relative = columns.points - wall.middle
-    at, off = relative @ wall.along, relative @ outward
     margin = min(_CORNER_MARGIN_CH, _CORNER_MARGIN_SHARE * (wall.end - wall.start))
-    facing = columns.rays @ outward
-    chosen = np.flatnonzero(
-        (np.abs(off) < reach)
-        & (at > wall.start + margin)
-        & (at < wall.end - margin)
-        & (facing > np.sin(np.deg2rad(config.grazing_deg)))
+    count, off, turn, sigma = _least_squares(
+        columns.points,
+        columns.rays,
+        columns.sigmas,
+        columns.view,
+        columns.worth,
+        wall.middle,
+        wall.along,
+        (wall.start + margin, wall.end - margin),
+        reach,
+        np.sin(np.deg2rad(config.grazing_deg)),
+        np.deg2rad(config.turn_sigma_deg),
+        config.correlation_columns,
     )
-    worth = columns.worth[chosen]
-    if worth.sum() < _FEWEST_COLUMNS:
+    if count == 0:
         return None
-    at, off, view = at[chosen], off[chosen], columns.view[chosen]
-    across = np.maximum(columns.sigmas[chosen] * facing[chosen], _FINEST_CH)
-    view = np.unique(view, return_inverse=True)[1]
-    count = np.bincount(view)
-    # Columns of one view err together: a view counts once, however many columns it has.
-    weight = 1.0 / (across**2 * count[view] * (1.0 + (off / (2.0 * across)) ** 2))
-    total = weight.sum()
-    mean_at, mean_off = (weight @ at) / total, (weight @ off) / total
-    spread = weight @ (at - mean_at) ** 2
-    turn = (weight @ ((at - mean_at) * (off - mean_off))) / (
-        spread + 1.0 / np.deg2rad(config.turn_sigma_deg) ** 2
-    )
-    along = wall.along + turn * outward
-    along = along / np.hypot(*along)
-    middle = wall.middle + outward * (mean_off - turn * mean_at)
-    independent = np.maximum(1.0, np.bincount(view, worth) / config.correlation_columns)
-    information = np.bincount(view, weight) * independent
-    # Where views differ by more than their sigmas, the wall is known less well, and better where
-    # by less: Birge's ratio, with a few views' worth of trust in the sigmas.
-    told = np.bincount(view, weight * (off - mean_off - turn * (at - mean_at))) / np.bincount(
-        view, weight
-    )
-    ratio = (_TRUST + float(information @ told**2)) / (_TRUST + len(count) - 1)
+    along = wall.along + turn * wall.outward
     return replace(
         wall,
-        middle=middle,
-        along=along,
-        columns=len(chosen),
-        sigma=float(np.sqrt(ratio / information.sum())),
+        middle=wall.middle + off * wall.outward,
+        along=along / np.hypot(*along),
+        columns=count,
+        sigma=sigma,
     )
 
 
-_CORNER_MARGIN_CH, _CORNER_MARGIN_SHARE = 0.07, 0.15
-"""Columns this near to a wall's ends may be of its neighbours."""
-_FEWEST_COLUMNS = 8
-"""Of 1024, of all views together."""
-_TRUST = 4.0
-_FINEST_CH = 0.004
+@njit(cache=True)
+def _least_squares(  # type: ignore[no-untyped-def]
+    points, rays, sigmas, view, worth, middle, along, within, reach, facing, turn_sigma, correlation
+):
+    """(columns, offset at the middle, turn, sigma) of a line through columns; no columns if few."""
+    views = view.max() + 1 if len(view) else 0
+    chosen = np.empty(len(points), np.int64)
+    at, off, across = np.empty(len(points)), np.empty(len(points)), np.empty(len(points))
+    own, own_worth = np.zeros(views), np.zeros(views)
+    n, widths = 0, 0.0
+    for k in range(len(points)):
+        x, y = points[k, 0] - middle[0], points[k, 1] - middle[1]
+        a, o = x * along[0] + y * along[1], x * along[1] - y * along[0]
+        sine = rays[k, 0] * along[1] - rays[k, 1] * along[0]
+        if abs(o) < reach and within[0] < a < within[1] and sine > facing:
+            chosen[n], at[n], off[n] = view[k], a, o
+            across[n] = max(sigmas[k] * sine, _FINEST_CH)
+            own[view[k]] += 1.0
+            own_worth[view[k]] += worth[k]
+            widths += worth[k]
+            n += 1
+    if widths < _FEWEST_COLUMNS:
+        return 0, 0.0, 0.0, np.nan
+    chosen, at, off, across = chosen[:n], at[:n], off[:n], across[:n]
+    # Columns of one view err together: a view counts once, however many columns it has.
+    weight = 1.0 / (across**2 * own[chosen] * (1.0 + (off / (2.0 * across)) ** 2))
+    total = weight.sum()
+    mean_at, mean_off = (weight * at).sum() / total, (weight * off).sum() / total
+    spread = (weight * (at - mean_at) ** 2).sum()
+    turn = (weight * (at - mean_at) * (off - mean_off)).sum() / (spread + 1.0 / turn_sigma**2)
+    left = weight * (off - mean_off - turn * (at - mean_at))
+    weights, lefts = np.zeros(views), np.zeros(views)
+    for k in range(n):
+        weights[chosen[k]] += weight[k]
+        lefts[chosen[k]] += left[k]
+    # Where views differ by more than their sigmas, the wall is known less well, and better where
+    # by less: Birge's ratio, with a few views' worth of trust in the sigmas.
+    ratio, information, telling = _TRUST, 0.0, 0
+    for v in range(views):
+        if own[v] > 0.0:
+            telling += 1
+            known = weights[v] * max(1.0, own_worth[v] / correlation)
+            information += known
+            ratio += known * (lefts[v] / weights[v]) ** 2
+    ratio /= _TRUST + telling - 1
+    return n, mean_off - turn * mean_at, turn, np.sqrt(ratio / information)
 
 
 def _straightened(walls: Sequence[WallLine], config: OutlineConfig) -> list[WallLine]:
