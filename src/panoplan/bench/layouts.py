@@ -28,7 +28,7 @@ UNKNOWN_ROWS = 46.0
 BINS_CH = (0.0, 0.7, 1.0, 1.4, 2.0, 2.7, 4.0, np.inf)
 """True distances, in camera heights, between which the uncertainty is judged."""
 _FARTHEST_CH = 1e3
-_SMALL_CH2 = 3.0
+SMALL_CH2 = 3.0
 """Floor of a small room, about 7 m²."""
 _SPANS = ("doors", "openings", "windows")
 _CIRCLE = 1024
@@ -141,7 +141,7 @@ def _judged(told: Layout, truth: Layout) -> tuple[dict[str, Any], FloatArray]:
         "floor_px": float(rows.mean()),
         "iou_2d": float((smaller**2).sum() / (larger**2).sum()),
         "openings": bool(truth.spans is not None and len(truth.spans.openings)),
-        "small": bool(np.pi * (far**2).mean() < _SMALL_CH2),
+        "small": bool(np.pi * (far**2).mean() < SMALL_CH2),
         "spans": {name: _overlap(told, truth, name) for name in _SPANS},
     }
     if told.floor_sigma is None:

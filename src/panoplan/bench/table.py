@@ -28,7 +28,7 @@ def update(page: Path, folder: Path) -> bool:
         page: Markdown with `<!-- measured: NAMES -->` and `<!-- end of measured -->`; the names,
             with commas, are of the tables that come between: buildings,
             methods, shapes, scale, sweeps, causes, difficulty, errors, flats, metric,
-            home, misplaced, layouts, exports, areas, model, runtime,
+            home, misplaced, layouts, realism, exports, areas, model, runtime,
             walks, tours.
         folder: of the benchmark files.
 
@@ -81,6 +81,7 @@ def updated(text: str, folder: Path, page: Path) -> str:
         "metric": _metric,
         "misplaced": _misplaced,
         "layouts": _layouts,
+        "realism": _realism,
         "exports": export_tables.formats,
         "areas": export_tables.areas,
         "model": export_tables.model,
@@ -269,6 +270,34 @@ def _layouts(files: list[dict[str, Any]]) -> str:
         f"{table(heads, rows)}\nWhat is seen in the walls.\n\n{table(ways, passages)}\n"
         f"How the stated σ holds.\n\n{table(bins, doubts)}"
     )
+
+
+def _realism(files: list[dict[str, Any]]) -> str:
+    told = []
+    for f in (data["figures"] for data in of_benchmark(files, "realism")):
+        rows = [
+            [
+                run["name"],
+                *(number(run["floor_px"][k], 1) for k in ("median", "mean")),
+                *(number(run[k], 1) for k in ("with_openings", "in_small_rooms")),
+                _interval(run["worse_by"]),
+            ]
+            for run in f["runs"]
+        ]
+        heads = ["learnt from renders with", "floor px, median", "mean", "mean with openings",
+                 "mean in small rooms", "worse by (90 %)"]  # fmt: skip
+        told.append(
+            f"Heads trained for {f['steps']} steps on {f['panoramas_learnt']} panoramas each, "
+            f"judged on {f['panoramas_judged']} of other homes in `still` quality; the second "
+            f"line tells how far chance goes.\n\n{table(heads, rows)}"
+        )
+    return "\n".join(told)
+
+
+def _interval(change: dict[str, float] | None) -> str:
+    if change is None:
+        return "–"
+    return f"{change['mean']:+.1f} ({change['low']:+.1f} to {change['high']:+.1f})"
 
 
 def _runtime(files: list[dict[str, Any]]) -> str:

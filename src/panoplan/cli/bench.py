@@ -29,9 +29,9 @@ def add_parser(commands: Any) -> None:
         "room's cameras of a tour shifted, on simulated flats or on a scene. difficulty: a scene's "
         "real layouts against simulated ones. runtime: time and memory on a long walk. odometry: "
         "on rendered walks. tour: joining a scene's photos. layouts: a layout network on a folder "
-        "with images and true layouts. exports: what each format of a scene's plan takes, read "
-        "back. model: the textured model against a scene's photos. table: writes what they "
-        "measured into a page.",
+        "with images and true layouts. realism: what each kind of realism in the renders brings to "
+        "its training. exports: what each format of a scene's plan takes, read back. model: the "
+        "textured model against a scene's photos. table: writes what they measured into a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
     parser.add_argument(
@@ -39,7 +39,7 @@ def add_parser(commands: Any) -> None:
         nargs="?",
         choices=[
             "v1", "accuracy", "metric", "home", "misplaced", "difficulty", "runtime", "odometry",
-            "tour", "layouts", "exports", "model", "table",
+            "tour", "layouts", "realism", "exports", "model", "table",
         ],
     )  # fmt: skip
     parser.add_argument(
@@ -47,7 +47,7 @@ def add_parser(commands: Any) -> None:
         nargs="?",
         type=Path,
         help="home, misplaced, difficulty, tour, layouts, exports, model: scene; odometry: walks; "
-        "table: page",
+        "realism: folder to work in; table: page",
     )
     parser.add_argument(
         "--model", type=Path, metavar="ONNX", help="layouts: network (default: the one shipped)"
@@ -92,7 +92,9 @@ def act(options: argparse.Namespace) -> int:
         return bench_v1.act(options)
     if options.what is None:
         raise InputError("bench", "nothing to measure", "bench v1, bench accuracy … (see --help)")
-    asked = ("home", "difficulty", "odometry", "tour", "layouts", "exports", "model", "table")
+    asked = (
+        "home", "difficulty", "odometry", "tour", "layouts", "realism", "exports", "model", "table",
+    )  # fmt: skip
     if options.what in asked and options.input is None:
         raise InputError(f"bench {options.what}", "no path", f"bench {options.what} PATH")
     if options.what == "table":
@@ -130,6 +132,7 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
         misplaced,
         model,
         odometry,
+        realism,
         runtime,
         tour,
     )
@@ -155,6 +158,7 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
         "layouts": lambda: layouts.measure(
             place, OnnxLayouts(options.model or SHIPPED, threads=1), report
         ),
+        "realism": lambda: realism.measure(place, report),
         "exports": lambda: exports.measure(place, config, report),
         "model": lambda: model.measure(place, config, report, options.pictures),
     }

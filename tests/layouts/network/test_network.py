@@ -117,10 +117,11 @@ def test_batches_turn_features_and_targets_alike(tmp_path):
 def test_training_learns_and_goes_on(tmp_path, monkeypatch, network, trunk_rate):
     folder = _folder(tmp_path, noise=0.05)
     monkeypatch.setattr(training, "pretrained", lambda: copy.deepcopy(network.trunk))
-    monkeypatch.setattr(training, "_WARM_UP", 1)
     out, told = tmp_path / "run", []
     for steps in (1, 5):
-        plan = training.Plan(60, steps=steps, batch=8, trunk_rate=trunk_rate, average=0.2)
+        plan = training.Plan(
+            60, steps=steps, batch=8, trunk_rate=trunk_rate, average=0.2, warm_up=1, shards=(0,)
+        )
         training.train(folder, out, plan, told.append)
     first, second = (json.loads(line)["loss"] for line in told)
     assert second < first - 0.05

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from panoplan.layouts.network import shards
-from panoplan.layouts.network.samples import TARGETS, WIDTH, samples, targets
+from panoplan.layouts.network.homes import draw_home
+from panoplan.layouts.network.samples import REALISM, TARGETS, WIDTH, samples, targets
 from panoplan.simulate.render.labels import Labels
 from panoplan.types.layout import Layout, Spans
 
@@ -25,6 +26,26 @@ def test_samples_are_repeated_by_the_seed_and_are_plausible():
         # What is seen through a door lies no nearer than the door.
         assert (through >= floor - 1e-4).mean() > 0.99
     assert not np.array_equal(first[0].image, first[1].image)
+
+
+@pytest.fixture(scope="module")
+def full():
+    return list(islice(samples(3, 2), 2))
+
+
+@pytest.mark.parametrize("kind", REALISM)
+def test_what_is_left_out_changes_the_pictures(full, kind):
+    """Two panoramas of one home; what the camera and the light do is not in the truth."""
+    less = list(islice(samples(3, 2, without=(kind,)), 2))
+    assert any(not np.array_equal(a.image, b.image) for a, b in zip(full, less, strict=True))
+    same_truth = all(np.array_equal(a.targets, b.targets) for a, b in zip(full, less, strict=True))
+    assert same_truth == (kind in ("light", "camera"))
+
+
+def test_without_open_plans_no_home_has_an_opening():
+    homes = [draw_home(np.random.default_rng(k), open_plans=False) for k in range(12)]
+    kinds = [{p.kind for p in home.passages} for home in homes]
+    assert sum(kind == {"door"} for kind in kinds) >= 8
 
 
 def test_targets_of_a_layout_by_hand():

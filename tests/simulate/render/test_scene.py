@@ -182,3 +182,28 @@ def test_nobody_walks_through_a_shut_door():
         leaves = shapely.linestrings([leaf for leaf in shell.leaves if np.ptp(leaf, axis=0).any()])
         assert shapely.distance(leaves, line).min() > 0.12
     assert through > 0
+
+
+def test_an_opening_as_high_as_its_rooms_has_their_ceiling_and_floor():
+    """No stripe in the colour of the walls tells where it is."""
+    flat, look = make_flat(3, opening_share=1.0), draw_look(np.random.default_rng(1))
+    mesh = MeshBuilder()
+    raise_shell(flat, look, frozenset(), mesh, np.random.default_rng(0))
+    built = mesh.build()
+    middle = np.array(
+        [built.triangles[built.patch == k].mean((0, 1)) for k in range(len(built.size))]
+    )
+    colour, flush = built.materials[built.material, 1:4], 0
+    for passage in flat.passages:
+        if passage.kind == "door":
+            continue
+        within = shapely.contains_xy(shapely.Polygon(passage.area), middle[:, 0], middle[:, 2])
+        (above,), (below,) = (
+            np.flatnonzero(within & (s * built.normal[:, 1] > 0.5)) for s in (1, -1)
+        )
+        assert any(np.allclose(colour[below], floor.colour) for floor in look.floors)
+        lowest = min(flat.rooms[k].ceiling_height_m for k in passage.rooms)
+        if np.isclose(-built.origin[above, 1], lowest, atol=1e-5):
+            np.testing.assert_allclose(colour[above], look.ceiling.colour, rtol=1e-5)
+            flush += 1
+    assert flush > 0

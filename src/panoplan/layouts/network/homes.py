@@ -15,17 +15,18 @@ from panoplan.simulate.joining import Joinery
 _MOST_ROOMS = 14
 
 
-def draw_home(rng: np.random.Generator) -> Building:
+def draw_home(rng: np.random.Generator, *, open_plans: bool = True) -> Building:
     """Some home.
 
     Args:
         rng: of all choices.
+        open_plans: False for doors between all rooms of most homes.
     """
     seed, kind = int(rng.integers(2**31)), rng.random()
     if kind < 0.05:
         return make_corridor_building(int(rng.integers(3, 9)), seed, opening_share=0.3)
     if kind < 0.75:
-        return _open_plan(seed, rng)
+        return _open_plan(seed, rng) if open_plans else make_flat(seed, opening_share=0.0)
     if kind < 0.87:
         return make_building("flat", seed)
     opening_share = float(rng.choice([0.05, 0.3, 0.7]))

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from panoplan.layouts.network.homes import draw_home
 from panoplan.layouts.network.stands import draw_stand
-from panoplan.simulate.render.develop import develop, draw_development
+from panoplan.simulate.render.develop import Development, develop, draw_development
 from panoplan.simulate.render.labels import Labeller, Labels
-from panoplan.simulate.render.scene import PREVIEW, Scene
+from panoplan.simulate.render.scene import PREVIEW, Quality, Scene
 from panoplan.types.arrays import FloatArray
 from panoplan.types.layout import Layout
 
 WIDTH = 512
 TARGETS = ("floor", "through", "ceiling", "corner", "door", "opening", "window")
 """Rows of a sample's targets: elevations in rad, then shares 0-1."""
+REALISM = ("furniture", "light", "camera", "tilt", "open plans", "closets")
+"""What can be left out of the samples: loose furniture; the sun, exposure
+and colour; blur, noise, compression and what hides the nadir; tilt; rooms open to one another;
+small rooms seen from their door or from within."""
+_OF_LIGHT = ("exposure", "flattening", "shoulder", "contrast", "balance", "saturation", "lens_step")
 _CORNER_DECAY = 0.9
 _HEIGHT_M, _HEIGHT_SPREAD_M, _HEIGHT_RANGE_M = 1.5, 0.16, (1.05, 1.85)
 
@@ -36,12 +41,19 @@ class Sample:
     targets: NDArray[np.float32]
 
 
-def samples(seed: int, per_building: int = 24) -> Iterator[Sample]:
+def samples(
+    seed: int,
+    per_building: int = 24,
+    quality: Quality = PREVIEW,
+    without: Collection[str] = (),
+) -> Iterator[Sample]:
     """Panoramas without end.
 
     Args:
         seed: the same seed gives the same ones.
         per_building: how many of each home.
+        quality: of the rendering.
+        without: those of `REALISM` that are left out.
 
     Yields:
         A sample at a time.
@@ -49,12 +61,20 @@ def samples(seed: int, per_building: int = 24) -> Iterator[Sample]:
     root = np.random.SeedSequence(seed)
     while True:
         building_seed, scene_seed, camera_seed = root.spawn(3)
-        building = draw_home(np.random.default_rng(building_seed))
-        scene = Scene(building, scene_seed, PREVIEW)
+        building = draw_home(
+            np.random.default_rng(building_seed), open_plans="open plans" not in without
+        )
+        scene = Scene(
+            building,
+            scene_seed,
+            quality,
+            furnished=0.0 if "furniture" in without else None,
+            sunny="light" not in without,
+        )
         labeller = Labeller(scene)
         rng = np.random.default_rng(camera_seed)
         for _ in range(per_building):
-            yield _sample(scene, labeller, rng)
+            yield _sample(scene, labeller, rng, without)
 
 
 def targets(labels: Labels) -> NDArray[np.float32]:
@@ -73,16 +93,29 @@ def targets(labels: Labels) -> NDArray[np.float32]:
     return np.array(rows, dtype=np.float32)
 
 
-def _sample(scene: Scene, labeller: Labeller, rng: np.random.Generator) -> Sample:
-    position, room = draw_stand(scene, rng)
+def _sample(
+    scene: Scene, labeller: Labeller, rng: np.random.Generator, without: Collection[str]
+) -> Sample:
+    position, room = draw_stand(scene, rng, small="closets" not in without)
     heading = float(rng.uniform(-np.pi, np.pi))
     height = float(np.clip(rng.normal(_HEIGHT_M, _HEIGHT_SPREAD_M), *_HEIGHT_RANGE_M))
-    tilt = _tilt(rng)
+    tilt = _tilt(rng) if "tilt" not in without else np.eye(3)
     turn = _turned(heading)
     pixels = scene.panorama(np.array([position[0], -height, position[1]]), turn @ tilt, WIDTH)
     labels = labeller.labels(position, heading, height, width=WIDTH, level_from_cam=tilt, room=room)
-    image = develop(pixels.radiance, draw_development(rng), rng)
+    image = develop(pixels.radiance, _development(rng, without), rng)
     return Sample(image, targets(labels))
+
+
+def _development(rng: np.random.Generator, without: Collection[str]) -> Development:
+    """Some camera's, as every camera's in what is left out."""
+    plain, drawn = Development(), draw_development(rng)
+    names = [
+        field.name
+        for field in fields(Development)
+        if ("light" if field.name in _OF_LIGHT else "camera") in without
+    ]
+    return replace(drawn, **{name: getattr(plain, name) for name in names})
 
 
 def _tilt(rng: np.random.Generator) -> FloatArray:

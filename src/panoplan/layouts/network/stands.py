@@ -15,12 +15,15 @@ _TRIES = 8
 _FROM_FURNITURE_M = 0.12
 
 
-def draw_stand(scene: Scene, rng: np.random.Generator) -> tuple[FloatArray, int]:
+def draw_stand(
+    scene: Scene, rng: np.random.Generator, *, small: bool = True
+) -> tuple[FloatArray, int]:
     """Somewhere on free floor: at the door of a small room, in one, in a doorway, or anywhere.
 
     Args:
         scene: the home.
         rng: of all choices.
+        small: whether small rooms are sought out.
 
     Returns:
         (2,) plan, and the index of the room whose panorama it is: in a doorway the smaller room
@@ -29,9 +32,9 @@ def draw_stand(scene: Scene, rng: np.random.Generator) -> tuple[FloatArray, int]
     kind = rng.random()
     stand = None
     if kind < _AT_SMALL:
-        stand = _at_small(scene, rng)
+        stand = _at_small(scene, rng) if small else None
     elif kind < _AT_SMALL + _IN_SMALL:
-        stand = _in_small(scene, rng)
+        stand = _in_small(scene, rng) if small else None
     elif kind < _AT_SMALL + _IN_SMALL + _IN_PASSAGE:
         stand = _in_passage(scene, rng)
     return _anywhere(scene, rng) if stand is None else stand

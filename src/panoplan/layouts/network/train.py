@@ -28,7 +28,6 @@ _EVENNESS = 0.5
 _LEAST_LOG_SCALE, _MOST_LOG_SCALE = -6.0, 1.0
 _ROWS = 512
 _HALF = 0.5
-_WARM_UP = 200
 _CHECKPOINT_S = 600
 
 
@@ -44,6 +43,8 @@ class Plan:
         batch: panoramas a step.
         average: decay of the running mean of the weights, which is what is kept.
         seed: of the order of the panoramas.
+        warm_up: steps over which the learning rate rises.
+        shards: numbers of those that are drawn; None for all that there are.
     """
 
     minutes: float
@@ -53,6 +54,8 @@ class Plan:
     batch: int = 32
     average: float = 0.998
     seed: int = 0
+    warm_up: int = 200
+    shards: tuple[int, ...] | None = None
 
 
 def head_plan(minutes: float, seed: int = 0) -> Plan:
@@ -90,6 +93,8 @@ def train(folder: Path, out: Path, plan: Plan, told: Callable[[str], None]) -> N
     step = 0
     while True:
         numbers = ready(folder, shards(folder, held_out=False))
+        if plan.shards is not None:
+            numbers = [number for number in numbers if number in plan.shards]
         if not numbers:
             raise InputError(folder, "no shard with features", "rendered shards")
         for batch in batches(folder, [int(rng.choice(numbers))], plan.batch, rng):
@@ -100,7 +105,7 @@ def train(folder: Path, out: Path, plan: Plan, told: Callable[[str], None]) -> N
                 return
             for group, peak in zip(optimiser.param_groups, peaks, strict=True):
                 group["lr"] = (
-                    peak * min(1, (step + 1) / _WARM_UP) * 0.5 * (1 + np.cos(np.pi * share))
+                    peak * min(1, (step + 1) / plan.warm_up) * 0.5 * (1 + np.cos(np.pi * share))
                 )
             loss = _loss(network, batch, tuned=tuned)
             optimiser.zero_grad(set_to_none=True)

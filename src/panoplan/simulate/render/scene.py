@@ -62,6 +62,7 @@ class Scene:
         quality: how well.
         furnished: 0 for a home without loose furniture, 1 for a full one; drawn where None.
         clear: (N, 2) plan: where nothing may stand and doors are open, as people walk there.
+        sunny: whether the sun may shine in.
 
     Raises:
         MissingExtraError: the `render` extra is not installed.
@@ -75,6 +76,7 @@ class Scene:
         *,
         furnished: float | None = None,
         clear: FloatArray | None = None,
+        sunny: bool = True,
     ) -> None:
         root = np.random.SeedSequence(seed) if isinstance(seed, int) else seed
         look_rng, shell_rng, things_rng, light_rng = map(np.random.default_rng, root.spawn(4))
@@ -91,7 +93,8 @@ class Scene:
         )
         self.mesh: Mesh = mesh.build()
         self.caster = ray_caster(self.mesh.triangles)
-        self.sun = _sun(light_rng)
+        sun = _sun(light_rng)
+        self.sun = sun if sunny else None
         self._world = int(light_rng.integers(2**20))
         self.light: LightMap = bake(
             self.mesh,

@@ -84,9 +84,10 @@ def raise_shell(
     windows = [_window_heights(building, w.room, rng) for w in building.windows]
     dry = look.floors
     paints = [look.walls[int(rng.integers(len(look.walls)))] for _ in building.rooms]
+    floors = []
     for k, room in enumerate(building.rooms):
-        floor = look.wet_floor if k in wet else dry[int(rng.integers(len(dry)))]
-        mesh.level(room.polygon, 0.0, floor, facing_up=True)
+        floors.append(look.wet_floor if k in wet else dry[int(rng.integers(len(dry)))])
+        mesh.level(room.polygon, 0.0, floors[k], facing_up=True)
         mesh.level(room.polygon, room.ceiling_height_m, look.ceiling, facing_up=False)
         if k in wet and rng.random() < 0.5:
             paints[k] = tiled(paints[k], rng, float(rng.choice([1.2, room.ceiling_height_m])))
@@ -96,7 +97,10 @@ def raise_shell(
     for k, passage in enumerate(building.passages):
         framed = passage.kind == "door" or rng.random() < 0.3
         lining = look.trim if framed else paints[passage.rooms[0]]
-        _tunnel(passage, heights[k], lining, dry[0], mesh)
+        ceiling = min(building.rooms[j].ceiling_height_m for j in passage.rooms)
+        overhead = look.ceiling if heights[k] == ceiling else replace(lining, detail=0.0)
+        underfoot = floors[passage.rooms[0]] if passage.kind == "opening" else dry[0]
+        _tunnel(passage, heights[k], lining, overhead, underfoot, mesh)
         if framed:
             for side in (0, 1):
                 _frame(passage, side, heights[k], frame, look.trim, mesh)
@@ -182,7 +186,12 @@ def _around(holes: list[_Hole], length: float, height: float) -> list[Rectangle]
 
 
 def _tunnel(
-    passage: Passage, height: float, lining: Material, floor: Material, mesh: MeshBuilder
+    passage: Passage,
+    height: float,
+    lining: Material,
+    overhead: Material,
+    underfoot: Material,
+    mesh: MeshBuilder,
 ) -> None:
     """What is seen in the thickness of the wall: jambs, lintel, threshold."""
     near, far = passage.faces
@@ -198,8 +207,8 @@ def _tunnel(
             sign * np.array([along[0], 0.0, along[1]]),
             plain,
         )
-    mesh.level(passage.area, height, plain, facing_up=False)
-    mesh.level(passage.area, 0.0, floor, facing_up=True)
+    mesh.level(passage.area, height, overhead, facing_up=False)
+    mesh.level(passage.area, 0.0, underfoot, facing_up=True)
 
 
 def _frame(
