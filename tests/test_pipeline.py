@@ -1,12 +1,16 @@
 """What a run leaves in its folder."""
 
+from dataclasses import replace
+
 import numpy as np
 from tests.scenes import RECTANGLE, walk
 
+from panoplan.bench.estimate import estimate
 from panoplan.config import Config
 from panoplan.datasets.scene import Scene
+from panoplan.estimator.state import Walk
 from panoplan.formats.run_folder import RunFolder
-from panoplan.pipeline import RunOptions, run
+from panoplan.pipeline import RunOptions, run, summary
 
 SPOTS = np.array([[-1.2, 0.3], [0.4, -0.8], [1.3, 0.7], [-0.5, 0.9]])
 
@@ -35,3 +39,12 @@ def test_no_pictures_of_stages_unless_asked_for(tmp_path):
     assert [call[0].startswith("keyframes, ") for call in calls].count(True) == 4
     # What an earlier run explained is not left beside another plan.
     assert leave(tmp_path / "run", explain=False) == usual
+
+
+def test_the_summary_says_how_sure_the_scale_is(tmp_path):
+    plan = estimate(tuple(walk(RECTANGLE, SPOTS)), Config(), Walk())
+    known = replace(plan, scale=replace(plan.scale, sigma=0.012))
+    assert " camera heights a trajectory unit ± 1.2 % (entropy)" in summary(known)
+    assert "uncertain" not in summary(known)
+    assert "uncertain: 4 layouts" in summary(replace(plan, scale=replace(plan.scale, sigma=0.3)))
+    assert "unit (entropy)" in summary(replace(plan, scale=replace(plan.scale, sigma=None)))

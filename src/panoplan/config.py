@@ -197,6 +197,15 @@ class ScaleConfig:
         "crowding alone lowers the entropy, and on long walks the smallest s of all may win.",
         paper=False,
     )
+    intrusion: float = _setting(
+        0.2,
+        "Weight, in nats, of the share of wall points that lie where another view of the window "
+        "sees free floor, when the search chooses between optima. Entropy alone lays the layouts "
+        "of a few photos on one another by chance.",
+        low=0.0,
+        high=100.0,
+        paper=0.0,
+    )
     smooth: bool = _setting(
         True,
         "Each point is shared among the four nearest cells, so that the curve is smooth.",
@@ -1499,6 +1508,7 @@ _PAPER: dict[str, Any] = {
         "sub_step": False,
         "facings": 1,
         "control": False,
+        "intrusion": 0.0,
         "smooth": False,
         "max_range_ch": 100.0,
         "columns": 16384,
@@ -1535,6 +1545,7 @@ _RELEASED: dict[str, Any] = {
         "combine": "mean",
         "facings": 1,
         "control": False,
+        "intrusion": 0.0,
         "smooth": False,
         "max_range_ch": 100.0,
         "columns": 16384,

@@ -125,6 +125,10 @@ def run(
     return plan
 
 
+_UNSURE = 0.05
+"""Relative sigma of a scale with which rooms a few metres apart are off by more than a wall."""
+
+
 def summary(plan: FloorPlan) -> str:
     """A few lines about a plan for the terminal."""
     shaped = [room for room in plan.rooms if room.polygon is not None]
@@ -133,7 +137,11 @@ def summary(plan: FloorPlan) -> str:
     if scale.ch_per_su is None:
         lines.append("scale unknown: lengths are camera heights, cameras are not placed")
     else:
-        told = [f"scale {scale.ch_per_su:.6g} camera heights a trajectory unit ({scale.method})"]
+        sigma = "" if scale.sigma is None else f" ± {100 * scale.sigma:.1f} %"
+        found = f"scale {scale.ch_per_su:.6g} camera heights a trajectory unit{sigma}"
+        told = [f"{found} ({scale.method})"]
+        if scale.sigma is not None and scale.sigma > _UNSURE:
+            told.append(f"uncertain: {scale.keyframes_used} layouts agree too little on any")
         if scale.at_edge:
             told.append("at the edge of the searched range: do not trust it")
         if not scale.converged:

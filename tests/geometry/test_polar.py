@@ -4,9 +4,11 @@ import pytest
 from panoplan.geometry.polar import (
     PROFILE_BINS,
     at_boundaries,
+    intruding_shares,
     intrusions,
     mutual_overlaps,
     passing_votes,
+    profile_rays,
     range_profile,
     signed_distance_sums,
     star_evidence,
@@ -124,6 +126,35 @@ def test_cameras_near_a_boundary_and_deep_inside_none():
     both = np.stack([_square_profile(np.zeros(2), half) for half in (1.0, 1e-3, 3.0)])
     assert not at_boundaries(inside, both, 10.0, 0.1)[1]
     assert at_boundaries(inside[:2], both[:2], 10.0, 0.1)[1]
+
+
+def test_share_of_points_that_another_view_sees_through():
+    circle = 2.0 * profile_rays(64)
+    offsets = np.stack([circle, 0.5 * circle])
+    profiles = np.array([range_profile(ring) for ring in offsets])
+    scales = np.array([0.0, 0.5, 0.7, 1.0])
+
+    def shares(positions, rises=(0.0, 0.0), seen=offsets):
+        where = np.array(positions, dtype=float)
+        return intruding_shares(seen, profiles, where, np.array(rises), scales, 0.3, 0.1)
+
+    # The small circle moves out of the large one: of 128 points, those lie inside the other that
+    # are nearer to its centre than 1.7, or than 0.7.
+    found = shares([[0, 0], [3, 0]])
+    assert found[0] == 0.5
+    assert found[0] > found[1] > found[2] > found[3] == 0.0
+    heading = (np.arange(64) + 0.5) * 2 * np.pi / 64
+    of_small = np.hypot(1.5 + np.sin(heading), np.cos(heading))
+    of_large = np.hypot(1.5 - 2 * np.sin(heading), 2 * np.cos(heading))
+    assert found[1] == (np.sum(of_small < 1.7) + np.sum(of_large < 0.7)) / 128
+    # A raised camera's circle grows with the scale, until it holds the other one.
+    grown = shares([[0, 0], [0, 0]], (0.0, 1.5))
+    assert list(grown > 0) == [True, False, False, True]
+    # Unknown columns count on neither side.
+    half = offsets.copy()
+    half[1, ::2] = np.nan
+    assert shares([[0, 0], [0, 0]], seen=half)[0] == pytest.approx(32 / 96)
+    assert not shares([[0, 0], [0, 0]], seen=np.full_like(offsets, np.nan)).any()
 
 
 def test_overlap_of_two_squares_over_the_smaller():

@@ -187,7 +187,7 @@ def _freeze(
     waiting = state.waiting
     there = _first_level(state, estimate.ch_per_su or 0.0, config)
     if estimate.method == "entropy" and estimate.ch_per_su is not None:
-        sigma = scale.scale_sigma(there, estimate.ch_per_su, config.scale)
+        sigma = scale.scale_sigma(there, estimate, config.scale)
         estimate = replace(estimate, sigma=sigma)
     rises = [view.rise_su for view in there]
     median_height = 1.0 + (estimate.ch_per_su or 0.0) * float(np.median(rises))

@@ -63,6 +63,87 @@ def range_profile(offsets: FloatArray) -> FloatArray:
     return out
 
 
+def intruding_shares(
+    offsets: FloatArray,
+    profiles: FloatArray,
+    positions: FloatArray,
+    rises: FloatArray,
+    scales: FloatArray,
+    margin: float,
+    share: float,
+) -> FloatArray:
+    """How many points of some views lie well inside the region of another, for each scale.
+
+    The point of column u of view i at scale s is (1 + s·rise_i)·offset_iu + s·position_i.
+
+    Args:
+        offsets: (N, C, 2) boundary points relative to their camera for a camera height of 1; NaN
+            where unknown.
+        profiles: (N, B) ranges of the views as `range_profile` gives them.
+        positions: (N, 2) cameras in trajectory units.
+        rises: (N,) how much higher than the first camera each one is, in trajectory units.
+        scales: (S,) candidates s, camera heights a trajectory unit.
+        margin: a point lies inside where it is nearer than the boundary by this, camera heights,
+        share: and by this share of the boundary's range.
+
+    Returns:
+        (S,) shares of the points known, 0 where none is.
+    """
+    return np.asarray(
+        _intruding_shares(offsets, profiles, positions, rises, scales, margin, 1.0 - share)
+    )
+
+
+@njit(cache=True)
+def _heading(x, y):
+    """arctan2(x, y) within 1e-5 rad, several times faster.
+
+    Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.47.
+    """
+    across, along = abs(x), abs(y)
+    most = max(across, along)
+    if most == 0.0:
+        return 0.0
+    z = min(across, along) / most
+    q = z * z
+    angle = z * (0.9998660 + q * (-0.3302995 + q * (0.1801410 + q * (-0.0851330 + q * 0.0208351))))
+    if across > along:
+        angle = 0.5 * np.pi - angle
+    if y < 0:
+        angle = np.pi - angle
+    return -angle if x < 0 else angle
+
+
+@njit(cache=True)
+def _intruding_shares(offsets, profiles, positions, rises, scales, margin, kept):
+    n_views, width = offsets.shape[:2]
+    bins = profiles.shape[1]
+    out = np.zeros(scales.size)
+    for k in range(scales.size):
+        s = scales[k]
+        known, inside = 0, 0
+        for i in range(n_views):
+            height = 1.0 + s * rises[i]
+            for u in range(width):
+                if np.isnan(offsets[i, u, 0]):
+                    continue
+                known += 1
+                x = height * offsets[i, u, 0] + s * positions[i, 0]
+                y = height * offsets[i, u, 1] + s * positions[i, 1]
+                for j in range(n_views):
+                    if j == i:
+                        continue
+                    dx, dy = x - s * positions[j, 0], y - s * positions[j, 1]
+                    b = int((_heading(dx, dy) + np.pi) * bins / (2 * np.pi)) % bins
+                    limit = (1.0 + s * rises[j]) * profiles[j, b]
+                    # Nothing is nearer than what is unknown.
+                    if np.hypot(dx, dy) < min(limit - margin, kept * limit):
+                        inside += 1
+                        break
+        out[k] = inside / max(known, 1)
+    return out
+
+
 def star_evidence(
     camera: FloatArray,
     profile: FloatArray,
@@ -182,26 +263,6 @@ def signed_distance_sums(
         weight,
     )
     return total, weight
-
-
-@njit(cache=True)
-def _heading(x, y):
-    """arctan2(x, y) within 1e-5 rad, several times faster.
-
-    Source: Abramowitz and Stegun, Handbook of Mathematical Functions, 4.4.47.
-    """
-    across, along = abs(x), abs(y)
-    most = max(across, along)
-    if most == 0.0:
-        return 0.0
-    z = min(across, along) / most
-    q = z * z
-    angle = z * (0.9998660 + q * (-0.3302995 + q * (0.1801410 + q * (-0.0851330 + q * 0.0208351))))
-    if across > along:
-        angle = 0.5 * np.pi - angle
-    if y < 0:
-        angle = np.pi - angle
-    return -angle if x < 0 else angle
 
 
 @njit(cache=True, fastmath=True)

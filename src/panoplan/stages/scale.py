@@ -9,42 +9,47 @@ import numpy as np
 
 from panoplan.config import ScaleConfig
 from panoplan.geometry.density import registered_entropy
+from panoplan.geometry.polar import intruding_shares, range_profile
 from panoplan.types.arrays import FloatArray, IntArray
 from panoplan.types.plan import ScaleEstimate
 from panoplan.types.view import CastLayout
 
 _SUB_STEP_RESOLUTION = 0.002
 _BEAM = 3
+_AROUND = 10
 _JACKKNIFE_MIN = 4
 _JACKKNIFE_PARTS = 10
 _JACKKNIFE_REACH = 0.05
+_RIVALS = 5
+_PROBES = 64
+_INSIDE_CH, _INSIDE_SHARE = 0.25, 0.15
+"""A point lies in a view's region where it is nearer than the boundary by this, and this share."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Points:
-    """What the entropy is computed from: N views of C columns."""
+    """What is computed from: N views of C columns, their regions, and fewer columns of each."""
 
     offsets: FloatArray
     sectors: IntArray
     sector_weights: FloatArray
     positions: FloatArray
     rises: FloatArray
+    profiles: FloatArray
+    probes: FloatArray
 
 
 class _Objective:
-    """Mean entropy over windows at candidates in step units; each is computed once."""
+    """A function of candidates in step units; each is computed once."""
 
-    def __init__(
-        self, points: _Points, windows: list[tuple[int, int]], unit: float, config: ScaleConfig
-    ) -> None:
-        self.points, self.windows, self.unit, self.config = points, windows, unit, config
+    def __init__(self, function: Callable[[FloatArray], FloatArray]) -> None:
+        self.function = function
         self.known: dict[float, float] = {}
 
     def __call__(self, candidates: FloatArray) -> FloatArray:
         fresh = np.array([k for k in candidates if k not in self.known])
         if fresh.size:
-            values = _mean_entropy(self.points, self.windows, fresh / self.unit, self.config)
-            self.known.update(zip(fresh, values, strict=True))
+            self.known.update(zip(fresh, self.function(fresh), strict=True))
         return np.array([self.known[k] for k in candidates])
 
 
@@ -59,6 +64,9 @@ def median_step(views: Sequence[CastLayout]) -> float:
 def recover_scale(views: Sequence[CastLayout], config: ScaleConfig) -> ScaleEstimate:
     """The scale at which the registered boundaries lie most sharply on one another.
 
+    Between optima it counts, too, how much of one view's boundary another sees through; the optimum
+    itself is that of the entropy.
+
     Args:
         views: at least two layouts of one walk, not all from one spot.
         config: settings.
@@ -67,24 +75,31 @@ def recover_scale(views: Sequence[CastLayout], config: ScaleConfig) -> ScaleEsti
         The scale s in camera heights a trajectory unit with the objective's curve; `ch_per_su`
         is None where no view has a known column or the camera did not move.
 
-    Source: Eq. 3-4.
+    Source: Eq. 3-4; docs/deviations.md.
     """
     points = _points(views, config)
     unit = median_step(views) if config.step_unit == "keyframe_step" else 1.0
     if unit <= 0.0 or not (points.sectors >= 0).any():
         return ScaleEstimate(None, "unknown", converged=False, keyframes_used=len(views))
     windows = _windows(len(views), config)
-    objective = _Objective(points, windows, unit, config)
+
+    def entropy(windows: list[tuple[int, int]]) -> _Objective:
+        return _Objective(lambda k: _mean_entropy(points, windows, k / unit, config))
+
+    sharpness = entropy(windows)
+    objective = _Objective(
+        lambda k: sharpness(k) + config.intrusion * _mean_intrusion(points, windows, k / unit)
+    )
     low, high = _range(points, config)
-    levels = _coarse_to_fine(objective, low, high, config)
+    levels = _coarse_to_fine(objective if config.intrusion else sharpness, low, high, config)
     best, step = levels[-1], config.steps[-1]
     if config.combine == "mean":
-        alone = (_Objective(points, [window], unit, config) for window in windows)
-        best = float(np.mean([_coarse_to_fine(one, low, high, config) for one in alone]))
+        alone = (_coarse_to_fine(entropy([window]), low, high, config) for window in windows)
+        best = float(np.mean([*alone]))
     if config.sub_step:
-        best, step = _sub_step(objective, best, step, low, high)
-    curve = np.array(sorted(objective.known.items()))
-    curve[:, 0] /= unit
+        best, step = _sub_step(sharpness, best, step, low, high)
+    candidates = np.array(sorted(sharpness.known))
+    curve = np.stack([candidates / unit, objective(candidates)], axis=1)
     curve.setflags(write=False)
     return ScaleEstimate(
         ch_per_su=best / unit,
@@ -97,15 +112,17 @@ def recover_scale(views: Sequence[CastLayout], config: ScaleConfig) -> ScaleEsti
     )
 
 
-def scale_sigma(views: Sequence[CastLayout], ch_per_su: float, config: ScaleConfig) -> float | None:
+def scale_sigma(
+    views: Sequence[CastLayout], estimate: ScaleEstimate, config: ScaleConfig
+) -> float | None:
     """How uncertain a recovered scale is.
 
     Jackknife: the scale is found anew without one stretch of the walk at a time, near the one
-    found with all of it.
+    found with all of it, or at another optimum where that is then the better one.
 
     Args:
         views: those that the scale was recovered from.
-        ch_per_su: the scale.
+        estimate: as `recover_scale` gave it, with a scale.
         config: settings.
 
     Returns:
@@ -116,15 +133,36 @@ def scale_sigma(views: Sequence[CastLayout], ch_per_su: float, config: ScaleConf
     """
     if len(views) < _JACKKNIFE_MIN or not config.sub_step:
         return None
-    candidates = ch_per_su * (1.0 + _JACKKNIFE_REACH * np.linspace(-1.0, 1.0, 17))
+    assert estimate.ch_per_su is not None
+    near = 1.0 + _JACKKNIFE_REACH * np.linspace(-1.0, 1.0, 17)
+    rivals = _rivals(estimate)
+    ratios = np.concatenate([near, rivals])
     found = []
     for left_out in np.array_split(np.arange(len(views)), min(_JACKKNIFE_PARTS, len(views))):
         rest = [view for k, view in enumerate(views) if k not in left_out]
-        points = _points(rest, config)
-        values = _mean_entropy(points, _windows(len(rest), config), candidates, config)
-        found.append(_vertex(candidates / ch_per_su, values))
-    count = len(found)
-    return float(np.sqrt((count - 1) * np.var(found)))
+        points, windows = _points(rest, config), _windows(len(rest), config)
+        scales = estimate.ch_per_su * ratios
+        sharpness = _mean_entropy(points, windows, scales, config)
+        objective = sharpness + config.intrusion * _mean_intrusion(points, windows, scales)
+        best = int(np.argmin(objective))
+        found.append(ratios[best] if best >= len(near) else _vertex(near, sharpness[: len(near)]))
+    off = np.array(found) - 1.0
+    # Where the parts agree with one another and not with the whole, that is no certainty.
+    if abs(off.mean()) < _JACKKNIFE_REACH / 2:
+        off -= off.mean()
+    return float(np.sqrt((len(off) - 1) * np.mean(off**2)))
+
+
+def _rivals(estimate: ScaleEstimate) -> FloatArray:
+    """The lowest optima of the objective elsewhere, relative to the scale found."""
+    assert estimate.curve is not None
+    assert estimate.ch_per_su is not None
+    ratios, values = estimate.curve[:, 0] / estimate.ch_per_su, estimate.curve[:, 1]
+    before, after = np.roll(values, 1), np.roll(values, -1)
+    before[0] = after[-1] = np.inf
+    lowest = (values <= before) & (values <= after) & (np.abs(ratios - 1.0) > _JACKKNIFE_REACH)
+    optima = np.flatnonzero(lowest)
+    return np.asarray(ratios[optima[np.argsort(values[optima], kind="stable")[:_RIVALS]]])
 
 
 def _vertex(at: FloatArray, values: FloatArray) -> float:
@@ -161,7 +199,16 @@ def _points(views: Sequence[CastLayout], config: ScaleConfig) -> _Points:
         sector_weights=np.array(shares),
         positions=np.array([view.position_su for view in views]),
         rises=np.array([view.rise_su for view in views]),
+        profiles=np.array([range_profile(view.offsets) for view in views]),
+        probes=np.array([_probes(view.offsets, config) for view in views]),
     )
+
+
+def _probes(offsets: FloatArray, config: ScaleConfig) -> FloatArray:
+    """A few columns spread over a view, NaN where unknown or too far."""
+    few = offsets[np.linspace(0, len(offsets), _PROBES, endpoint=False).astype(int)]
+    near = np.hypot(few[:, 0], few[:, 1]) <= config.max_range_ch
+    return np.where(near[:, None], few, np.nan)
 
 
 def _tangent(offsets: FloatArray) -> FloatArray:
@@ -199,6 +246,24 @@ def _mean_entropy(
                     config.saturation,
                 )
     return total / (len(windows) * len(config.cells_ch))
+
+
+def _mean_intrusion(
+    points: _Points, windows: list[tuple[int, int]], scales: FloatArray
+) -> FloatArray:
+    """Share of the points that another view of their window sees through."""
+    total = np.zeros(len(scales))
+    for start, stop in windows:
+        total += intruding_shares(
+            points.probes[start:stop],
+            points.profiles[start:stop],
+            points.positions[start:stop],
+            points.rises[start:stop],
+            scales,
+            _INSIDE_CH,
+            _INSIDE_SHARE,
+        )
+    return total / len(windows)
 
 
 def _range(points: _Points, config: ScaleConfig) -> tuple[float, float]:
@@ -241,6 +306,8 @@ def _sub_step(
     objective: Callable[[FloatArray], FloatArray], best: float, step: float, low: float, high: float
 ) -> tuple[float, float]:
     """Refines below the last step, then takes the vertex of a parabola through the bottom."""
+    around = np.clip(step * (round(best / step) + np.arange(-_AROUND, _AROUND + 1)), low, high)
+    best = float(around[np.argmin(objective(around))])
     while step > _SUB_STEP_RESOLUTION * best:
         fine = step / 4
         candidates = np.clip(best + fine * np.arange(-5, 6), low, high)

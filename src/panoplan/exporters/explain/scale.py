@@ -99,6 +99,7 @@ def _draw_objective(figure: Figure, explanation: Explanation, high: float, wide:
     settings = explanation.config.scale
     label = "entropy" if settings.saturation == 0 else "entropy of saturated counts"
     label += " less that of the control" if settings.control else ""
+    label += " and what others see through" if settings.intrusion else ""
     centre = searched.ch_per_su or used.ch_per_su or float(s[np.argmin(objective)])
     marks = [m for m in (used.ch_per_su, searched.ch_per_su, scale.adjusted_ch_per_su) if m]
     marks.append(float(s[np.argmin(objective)]))
