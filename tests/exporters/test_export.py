@@ -20,7 +20,7 @@ def test_every_kind_is_written(tmp_path):
 
 @pytest.mark.parametrize(
     ("made", "kinds"),
-    [(plan(), ["csv", "dwg"]), (plan(unit="ch"), ["csv"]), (plan((), ()), ["csv"])],
+    [(plan(), ["csv", "dwg"]), (plan(), []), (plan(unit="ch"), ["csv"]), (plan((), ()), ["csv"])],
 )
 def test_where_one_fails_nothing_is_written(tmp_path, made, kinds):
     with pytest.raises(InputError):

@@ -181,3 +181,33 @@ def test_a_file_of_any_size_is_not_read(tmp_path):
         stream.truncate(65 * 2**20)
     with pytest.raises(InputError, match="at most"):
         read_plan(file)
+
+
+def test_half_a_character_is_refused(tmp_path):
+    path = tmp_path / "plan.json"
+    data = plan_to_dict(plan())
+    data["rooms"][0]["name"] = "a\ud800b"
+    path.write_text(json.dumps(data), "ascii")
+    with pytest.raises(InputError, match=r"\$\.rooms\[0\]\.name: found half of a character"):
+        read_plan(path)
+    data["rooms"][0]["name"] = "\U0001f600"
+    path.write_text(json.dumps(data), "ascii")
+    assert read_plan(path).rooms[0].name == "\U0001f600"
+
+
+@pytest.mark.parametrize("kind", ["room", "wall", "aperture"])
+def test_an_id_that_is_there_twice_is_refused(tmp_path, kind):
+    path = tmp_path / "plan.json"
+    doors = tuple(
+        Aperture(name, np.array([[4.0, 1.0], [4.0, 1.9]]), ("room_01",), ("wall_01",))
+        for name in ("door_01", "door_02")
+    )
+    data = plan_to_dict(replace(plan(), doors=doors))
+    walls = [wall for room in data["rooms"] for wall in room["walls"]]
+    items = {"room": data["rooms"], "wall": walls, "aperture": data["doors"]}[kind]
+    path.write_text(json.dumps(data))
+    read_plan(path)
+    items[1]["id"] = items[0]["id"]
+    path.write_text(json.dumps(data))
+    with pytest.raises(InputError, match=f"{kind} '{items[0]['id']}' more than once"):
+        read_plan(path)

@@ -147,10 +147,10 @@ def export(
         The files in the order of `kinds`.
 
     Raises:
-        InputError: an unknown kind, a plan that cannot be exported so, or a place that cannot be
-            written; MissingExtraError: a library is not installed.
+        InputError: no kind or an unknown one, a plan that cannot be exported so, or a place that
+            cannot be written; MissingExtraError: a library is not installed.
     """
-    for kind in kinds:
+    for kind in kinds or [""]:
         if kind not in KINDS:
             raise InputError("--to", repr(kind), "some of " + ",".join(KINDS))
     files: dict[str, bytes] = {}

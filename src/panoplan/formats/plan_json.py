@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -50,11 +51,19 @@ def read_plan(path: Path) -> FloorPlan:
     """Reads a plan of at most 64 MiB.
 
     Raises:
-        InputError: not readable, not as the schema wants it (with the JSON path), or a number
-            that is not finite.
+        InputError: not readable, not as the schema wants it (with the JSON path), a number that
+            is not finite, or an id that is there twice.
     """
     data = read_json(path)
     check(data, path, "plan.schema.json", SCHEMA, "a plan")
+    rooms = data["rooms"]
+    walls = [wall for room in rooms for wall in room["walls"]]
+    apertures = [*data["doors"], *data["openings"], *data["windows"]]
+    for kind, items in (("room", rooms), ("wall", walls), ("aperture", apertures)):
+        ids = Counter(item["id"] for item in items)
+        twice = next((name for name, count in ids.items() if count > 1), None)
+        if twice is not None:
+            raise InputError(path, f"{kind} {twice[:60]!r} more than once", "an id for each")
     return plan_from_dict(data)
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import functools
 import json
+import re
 import sys
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from importlib import resources
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,7 @@ from panoplan.errors import InputError
 from panoplan.formats.atomic import read_text
 
 _LIMIT = 64 * 2**20
+_SURROGATE = re.compile("[\ud800-\udfff]")
 _LARGEST = sys.float_info.max
 
 
@@ -43,8 +45,8 @@ def check(data: Any, path: Path, schema: str, version: int, kind: str) -> None:
         kind: what the file holds.
 
     Raises:
-        InputError: of a later version, not as the schema wants it (with the JSON path), or a
-            number that is not finite.
+        InputError: of a later version, not as the schema wants it (with the JSON path), a number
+            that is not finite, or a text that is no Unicode.
     """
     from jsonschema.exceptions import best_match
 
@@ -59,18 +61,28 @@ def check(data: Any, path: Path, schema: str, version: int, kind: str) -> None:
     where = not_finite(data, "$")
     if where is not None:
         raise InputError(f"{path}, {where}", "NaN or infinity", "a finite number")
+    where = _first(data, "$", lambda value: isinstance(value, str) and _SURROGATE.search(value))
+    if where is not None:
+        raise InputError(f"{path}, {where}", "half of a character", "a text in Unicode")
 
 
 def not_finite(value: Any, where: str) -> str | None:
     """JSON path of the first number that is not finite, or None."""
+    return _first(
+        value, where, lambda v: isinstance(v, int | float) and not -_LARGEST <= v <= _LARGEST
+    )
+
+
+def _first(value: Any, where: str, wrong: Callable[[Any], object]) -> str | None:
+    """JSON path of the first value that is wrong, or None."""
     items: Iterable[tuple[str, Any]] = ()
-    if isinstance(value, int | float) and not -_LARGEST <= value <= _LARGEST:
+    if wrong(value):
         return where
     if isinstance(value, dict):
         items = ((f"{where}.{key}", item) for key, item in value.items())
     elif isinstance(value, list):
         items = ((f"{where}[{k}]", item) for k, item in enumerate(value))
-    return next((found for path, item in items if (found := not_finite(item, path))), None)
+    return next((found for path, item in items if (found := _first(item, path, wrong))), None)
 
 
 @functools.cache

@@ -81,7 +81,7 @@ def place(floors: Sequence[Storey], paper: str | None = None) -> Placement:
                 return Placement(sheet, scale, turn, (low + high) / 2)
     raise InputError(
         "plan",
-        f"{extent.max() / 1000:.0f} m from end to end",
+        f"{extent.max() / 1000:.6g} m from end to end",
         f"a plan that fits on {paper or 'A0'} at 1:{SCALES[-1]}",
     )
 
