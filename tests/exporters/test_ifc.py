@@ -9,16 +9,21 @@ from tests.exporters.storeys import ODD_NAMES, flat, two_storeys
 from tests.metrics.plans import FLAT, plan, square
 
 from panoplan.errors import MissingExtraError
+from panoplan.exporters.geojson import Anchor
 from panoplan.exporters.heights import DOOR_HEAD_M
 from panoplan.exporters.ifc import plan_ifc
 
 pytest.importorskip("ifcopenshell", reason="the extra 'export' is not installed")
 
 
-def opened(made):
+def parsed(data):
     import ifcopenshell
 
-    return ifcopenshell.file.from_string(plan_ifc(made, "Flat").decode("utf-8"))
+    return ifcopenshell.file.from_string(data.decode("utf-8"))
+
+
+def opened(made):
+    return parsed(plan_ifc(made, "Flat"))
 
 
 def complaints(file):
@@ -137,3 +142,17 @@ def test_what_is_missing_is_told(monkeypatch):
     monkeypatch.setitem(sys.modules, "ifcopenshell", None)
     with pytest.raises(MissingExtraError, match=r"IFC needs ifcopenshell.*panoplan\[export\]"):
         plan_ifc(flat(), "Flat")
+
+
+def test_north_and_the_place_are_the_models():
+    made = plan_ifc(flat(), "Flat", north=np.deg2rad(30), anchor=Anchor(-48.1, 11.5125, 0.5))
+    file = parsed(made)
+    (model,) = file.by_type("IfcGeometricRepresentationContext", include_subtypes=False)
+    # 30° from the second axis towards the first.
+    assert model.TrueNorth.DirectionRatios == pytest.approx((0.5, 3**0.5 / 2))
+    (site,) = file.by_type("IfcSite")
+    assert site.RefLatitude == (-48, -6, 0, 0)
+    assert site.RefLongitude == (11, 30, 45, 0)
+    assert complaints(file) == []
+    (plain,) = opened(flat()).by_type("IfcGeometricRepresentationContext", include_subtypes=False)
+    assert plain.TrueNorth is None

@@ -48,7 +48,8 @@ def add_parser(commands: Any) -> None:
     parser.add_argument(
         "--anchor",
         metavar="LAT,LON",
-        help="degrees (WGS 84) of the plan's origin: GeoJSON on the globe; wants --north",
+        help="degrees (WGS 84) of the plan's origin: GeoJSON on the globe, the site of the IFC; "
+        "wants --north",
     )
     parser.add_argument(
         "--images",

@@ -33,7 +33,8 @@ class ExportOptions:
         north: rad, heading of north in the plan, from its second axis towards its first; None
             where not known.
         paper: "A4" to "A0" for sheets, None for what suits.
-        anchor: where the plan's origin lies on the globe, for GeoJSON; None for plan metres.
+        anchor: where the plan's origin lies on the globe, for GeoJSON and IFC; None where not
+            known.
         images: panorama of each keyframe, for the GLB's texture; empty for plain colours.
         progress: called with (surfaces textured, surfaces in all).
     """
@@ -79,7 +80,8 @@ def _geojson(plan: FloorPlan, options: ExportOptions) -> Files:
 def _ifc(plan: FloorPlan, options: ExportOptions) -> Files:
     from panoplan.exporters.ifc import plan_ifc
 
-    return {"plan.ifc": plan_ifc(plan, options.title)}
+    made = plan_ifc(plan, options.title, north=options.north, anchor=options.anchor)
+    return {"plan.ifc": made}
 
 
 def _glb(plan: FloorPlan, options: ExportOptions) -> Files:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import uuid
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -10,6 +11,7 @@ import shapely
 
 from panoplan.errors import MissingExtraError
 from panoplan.exporters.bodies import Interval, WallBody, body_of, wall_bodies
+from panoplan.exporters.geojson import Anchor
 from panoplan.exporters.heights import CEILING_M, ceilings, door_head, elevations, window_edges
 from panoplan.exporters.labels import printable
 from panoplan.exporters.sheet.title import AREA_RULE
@@ -23,7 +25,9 @@ _NO_TIME = "1970-01-01T00:00:00"
 _NAMESPACE = uuid.UUID("6f0bb0de-65d5-4a04-a5c5-1c1f4a0d7d0c")
 
 
-def plan_ifc(plan: FloorPlan, title: str) -> bytes:
+def plan_ifc(
+    plan: FloorPlan, title: str, *, north: float | None = None, anchor: Anchor | None = None
+) -> bytes:
     """A plan as IFC4 in metres, in the plan frame; the same plan gives the same bytes.
 
     Each room is an IfcSpace with base quantities, each piece of wall an IfcWall, each aperture an
@@ -31,11 +35,18 @@ def plan_ifc(plan: FloorPlan, title: str) -> bytes:
     that a plan does not tell are assumed (`exporters.heights`, `exporters.bodies`) and noted in
     the property set Panoplan.
 
+    Args:
+        plan: metric.
+        title: of project and building.
+        north: rad, from the plan's second axis towards its first, the model's true north; None
+            where not known.
+        anchor: where the plan's origin lies on the globe, the site's place; None where not known.
+
     Raises:
         InputError: not metric or without rooms; MissingExtraError: ifcopenshell is not installed.
     """
     floors = metric_storeys(plan)
-    writer = _Writer(plan, title)
+    writer = _Writer(plan, title, north, anchor)
     heights, rises = ceilings(floors), elevations(floors)
     for floor in floors:
         writer.storey(floor, rises[floor.level], heights)
@@ -45,7 +56,9 @@ def plan_ifc(plan: FloorPlan, title: str) -> bytes:
 class _Writer:
     """An IFC file that grows element by element."""
 
-    def __init__(self, plan: FloorPlan, title: str) -> None:
+    def __init__(
+        self, plan: FloorPlan, title: str, north: float | None, anchor: Anchor | None
+    ) -> None:
         try:
             import ifcopenshell
             import ifcopenshell.api
@@ -60,6 +73,9 @@ class _Writer:
         volume = self._run("unit.add_si_unit", self._file, unit_type="VOLUMEUNIT")
         project.UnitsInContext = self._file.createIfcUnitAssignment([metres, area, volume])
         model = self._run("context.add_context", self._file, context_type="Model")
+        if north is not None:
+            ahead = (math.sin(north), math.cos(north))
+            model.TrueNorth = self._file.createIfcDirection(ahead)
         self._body = self._run(
             "context.add_context",
             self._file,
@@ -69,6 +85,9 @@ class _Writer:
             parent=model,
         )
         site = self._entity("IfcSite", "Site")
+        if anchor is not None:
+            site.RefLatitude = _angle(anchor.latitude_deg)
+            site.RefLongitude = _angle(anchor.longitude_deg)
         self._building = self._entity("IfcBuilding", title)
         self._place(site, None, 0.0)
         self._place(self._building, site, 0.0)
@@ -242,3 +261,11 @@ def _edges(kind: str, ceiling: float) -> Interval:
 
 def _largest(area: Any) -> Any:
     return max(shapely.get_parts(area), key=lambda part: float(part.area))
+
+
+def _angle(degrees: float) -> tuple[int, int, int, int]:
+    """Degrees, minutes, seconds and millionths of a second, all of one sign."""
+    sign = -1 if degrees < 0 else 1
+    seconds, millionths = divmod(round(abs(degrees) * 3600e6), 10**6)
+    minutes, second = divmod(seconds, 60)
+    return sign * (minutes // 60), sign * (minutes % 60), sign * second, sign * millionths
