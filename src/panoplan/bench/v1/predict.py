@@ -99,18 +99,23 @@ class Prediction:
     cpu_seconds: float
 
 
-def predict(task: Task) -> Prediction:
-    """Runs a method on a scene.
+def predict(tasks: Sequence[Task]) -> list[Prediction]:
+    """Runs methods on a scene, which is made once.
 
     Args:
-        task: scene and row.
+        tasks: rows of one scene, at least one.
 
     Returns:
-        As of `made_of`.
+        For each as of `made_of`.
     """
-    if task.row.method == POINTS:
-        return made_of_points(task.source)
-    return made_of(task.source.open(), task.row.config)
+    source = tasks[0].source
+    recording = source.open()
+    return [
+        made_of_points(source, recording)
+        if task.row.method == POINTS
+        else made_of(recording, task.row.config)
+        for task in tasks
+    ]
 
 
 def made_of(recording: Recording, config: Config) -> Prediction:
@@ -127,16 +132,17 @@ def made_of(recording: Recording, config: Config) -> Prediction:
     return _timed(lambda: estimate(recording.keyframes, config, recording.walk))
 
 
-def made_of_points(source: Source) -> Prediction:
+def made_of_points(source: Source, recording: Recording) -> Prediction:
     """What the baseline makes of a scene's scan.
 
     Args:
-        source: the scene; its scan is in the world of the true poses, and tells them.
+        source: the scene.
+        recording: of it; the scan is in the world of the true poses, and tells them.
 
     Returns:
         As of `made_of`.
     """
-    walked = source.open().truth.trajectory
+    walked = recording.truth.trajectory
     cameras = (
         ()
         if walked is None

@@ -124,14 +124,19 @@ def _keep_predictions(
     tasks: Sequence[Task], store: Store, workers: Workers, progress: Progress
 ) -> None:
     length = {task.source.name: store.scene(task.source).keyframes for task in tasks}
-    missing = [task for task in tasks if not store.has_prediction(task)]
+    missing: dict[str, list[Task]] = {}
+    for task in tasks:
+        if not store.has_prediction(task):
+            missing.setdefault(task.source.name, []).append(task)
     # The longest walks first, so that no process is left alone with one.
-    missing.sort(key=lambda task: -length[task.source.name])
-    total = sum(length[task.source.name] for task in missing)
+    names = sorted(missing, key=lambda name: -length[name])
+    work = [missing[name] for name in names]
+    total = sum(length[name] * len(missing[name]) for name in names)
     done = 0
-    for number, made in workers(predict, missing):
-        store.keep_prediction(missing[number], made)
-        done += length[missing[number].source.name]
+    for number, made in workers(predict, work):
+        for task, prediction in zip(work[number], made, strict=True):
+            store.keep_prediction(task, prediction)
+        done += length[names[number]] * len(made)
         progress(done, total, "predictions")
 
 
