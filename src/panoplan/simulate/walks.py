@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -124,6 +125,7 @@ def stills(
     rng: np.random.Generator,
     *,
     per_room: tuple[int, int] = (1, 3),
+    counts: Sequence[int] | None = None,
     start: int | None = None,
     camera_height_m: float | None = None,
 ) -> Walk:
@@ -133,6 +135,7 @@ def stills(
         building: connected.
         rng: of all choices.
         per_room: fewest and most photos a room.
+        counts: photos of each room instead.
         start: index of the first room; drawn where None.
         camera_height_m: nominal height; drawn from 1.4-1.7 m where None.
 
@@ -147,7 +150,8 @@ def stills(
     order = _visits(building, rng, first)
     places: list[FloatArray] = []
     for room in dict.fromkeys(order):
-        count = int(rng.integers(per_room[0], per_room[1] + 1))
+        drawn = int(rng.integers(per_room[0], per_room[1] + 1))
+        count = drawn if counts is None else counts[room]
         spots = _waypoints(_Footing(building, room), rng, count)
         places += [np.append(spot, building.floor_m(room)) for spot in spots]
     standing = np.array(places)

@@ -10,8 +10,8 @@ from panoplan.cli.main import main
 from panoplan.formats.layout_npz import read_layout_npz
 from panoplan.formats.sequence import read_sequence
 from panoplan.formats.tum import read_tum
-from panoplan.simulate.render.record import record
-from panoplan.simulate.render.scene import PREVIEW
+from panoplan.simulate.render.record import USUAL, Session, kept_clear, record
+from panoplan.simulate.render.scene import PREVIEW, Scene
 from panoplan.simulate.scene import simulate_flat
 
 ARGUMENTS = ["simulate", "--seed", "4", "--rooms", "5", "--stills", "--quiet"]
@@ -82,3 +82,26 @@ def test_two_processes_take_the_same_pictures(tmp_path):
     paths = sorted(path.relative_to(one) for path in one.rglob("*") if path.is_file())
     assert paths == sorted(path.relative_to(two) for path in two.rglob("*") if path.is_file())
     assert all((one / path).read_bytes() == (two / path).read_bytes() for path in paths)
+
+
+def test_who_opens_all_doors_finds_none_shut():
+    home = simulate_flat(4, "exact", rooms=5, stills=True)
+    shut = [
+        Scene(home.building, 4, PREVIEW, furnished=0.0, clear=kept_clear(home, session)).shell.shut
+        for session in (USUAL, Session(doors_open=True))
+    ]
+    assert shut[0]
+    assert shut[1] == frozenset()
+
+
+def test_a_sharp_camera_keeps_what_another_blurs(tmp_path):
+    home = simulate_flat(4, "exact", rooms=5, stills=True)
+    one = replace(home, keyframes=home.keyframes[:1])
+    edges = []
+    for name, session in (("any", Session(0.0)), ("sharp", Session(0.0, sharp=True))):
+        record(tmp_path / name, one, 5, PREVIEW, width=512, session=session)
+        (path,) = (tmp_path / name / "images").iterdir()
+        with Image.open(path) as picture:
+            grey = np.asarray(picture.convert("L"), dtype=float)
+        edges.append(np.percentile(np.abs(np.diff(grey, axis=1)), 99))
+    assert edges[1] > 1.2 * edges[0]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import multiprocessing
 from collections.abc import Callable, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -20,9 +20,30 @@ from panoplan.simulate.render.labels import Labeller
 from panoplan.simulate.render.scene import Quality, Scene
 from panoplan.simulate.scene import SimulatedScene
 from panoplan.simulate.walks import about_y
+from panoplan.types.arrays import FloatArray
 
 IMAGES, DEPTHS = "images", "depth"
 _JPEG_QUALITY = 92
+
+
+@dataclass(frozen=True)
+class Session:
+    """How a home is prepared and photographed.
+
+    Attributes:
+        furnished: 0 for no loose furniture, 1 for a full home; drawn where None.
+        doors_open: whether every door is open, not only those that the camera comes by.
+        sharp: whether the camera is a sharp one on a tripod; drawn as any where not.
+    """
+
+    furnished: float | None = None
+    doors_open: bool = False
+    sharp: bool = False
+
+
+USUAL = Session()
+_SHARP_PX = 0.35
+"""Blur of a sharp camera, pixels of a picture 1024 wide."""
 
 
 def record(
@@ -32,6 +53,7 @@ def record(
     quality: Quality,
     *,
     width: int = 1024,
+    session: Session = USUAL,
     jobs: int = 1,
     told: Callable[[int, int], None] = lambda done, total: None,
 ) -> dict[str, str]:
@@ -44,6 +66,7 @@ def record(
         seed: of the building's looks and the camera.
         quality: of the rendering.
         width: of the images.
+        session: how the home is prepared and photographed.
         jobs: processes, this one included; the pictures do not depend on it.
         told: called with the number of pictures done and of all.
 
@@ -61,7 +84,7 @@ def record(
     context = multiprocessing.get_context("spawn")
     with ProcessPoolExecutor(max(1, len(others)), mp_context=context) as pool:
         working = [
-            pool.submit(_photograph, folder, simulated, seed, quality, width, numbers)
+            pool.submit(_photograph, folder, simulated, seed, quality, width, session, numbers)
             for numbers in others
         ]
         _photograph(
@@ -70,6 +93,7 @@ def record(
             seed,
             quality,
             width,
+            session,
             mine,
             lambda k: told(min(k + jobs, count), count),
         )
@@ -88,6 +112,7 @@ def _photograph(
     seed: int,
     quality: Quality,
     width: int,
+    session: Session,
     numbers: Sequence[int],
     told: Callable[[int], None] = lambda number: None,
 ) -> None:
@@ -98,10 +123,18 @@ def _photograph(
     poses = simulated.truth.trajectory
     if poses is None:
         raise ValueError("a simulated scene without its true trajectory")
-    scene = Scene(simulated.building, scene_seed, quality, clear=poses.translations[:, [0, 2]])
+    scene = Scene(
+        simulated.building,
+        scene_seed,
+        quality,
+        furnished=session.furnished,
+        clear=kept_clear(simulated, session),
+    )
     labeller = Labeller(scene)
     # The file itself is the only compression.
     development = replace(draw_development(np.random.default_rng(camera_seed)), jpeg=0)
+    if session.sharp:
+        development = replace(development, blur_px=_SHARP_PX)
     for k in numbers:
         pose, key = poses[k], simulated.keyframes[k].id
         camera = pose.translation - np.array([0.0, simulated.camera_height_m, 0.0])
@@ -119,3 +152,19 @@ def _photograph(
         write_depth(folder / DEPTHS / f"{key}.png", panorama.distance_m)
         write_layout_npz(folder / TRUE_LAYOUTS / f"{key}.npz", labels.closed)
         told(k)
+
+
+def kept_clear(simulated: SimulatedScene, session: Session) -> FloatArray:
+    """(N, 2) plan: where nothing may stand and doors are open.
+
+    Raises:
+        ValueError: a scene without its true trajectory.
+    """
+    poses = simulated.truth.trajectory
+    if poses is None:
+        raise ValueError("a simulated scene without its true trajectory")
+    stands = poses.translations[:, [0, 2]]
+    if not session.doors_open:
+        return np.asarray(stands)
+    doors = [passage.area.mean(axis=0) for passage in simulated.building.passages]
+    return np.vstack([stands, *doors])

@@ -1,0 +1,65 @@
+"""A made-up home photographed as an estate agent does: a few sharp stills a room, doors open."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from panoplan.formats.sequence import write_sequence
+from panoplan.simulate.families import make_building
+from panoplan.simulate.render.record import Session, record
+from panoplan.simulate.render.scene import QUALITIES
+from panoplan.simulate.scene import Grade, SimulatedScene, noise_model, recorded
+from panoplan.simulate.walks import stills
+
+_FAMILY = "flat"
+_GRADE: Grade = "measured"
+_PHOTOS_A_ROOM = 1.7
+"""As in tours of real homes."""
+_WIDTH_PX, _QUALITY = 2048, replace(QUALITIES["still"], samples=1)
+"""As many rays as a still of 1024 px has, each a pixel of its own."""
+_FURNISHED = (0.5, 1.0)
+
+
+def tour_home(seed: int) -> SimulatedScene:
+    """A tour of a flat: one photo in each room, the others where there is most floor.
+
+    Args:
+        seed: of the flat, the places and the errors of the layouts, ≥ 0.
+
+    Raises:
+        InputError: a negative seed.
+    """
+    building = make_building(_FAMILY, seed)
+    ways, counts, noise, drift = (
+        np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4)
+    )
+    areas = np.array([room.area for room in building.rooms])
+    more = round(_PHOTOS_A_ROOM * len(areas)) - len(areas)
+    photos = 1 + counts.multinomial(more, areas / areas.sum())
+    way = stills(building, ways, counts=photos.tolist())
+    return recorded(building, way, noise_model(_GRADE), 1.0, noise, drift)
+
+
+def photograph_tour(
+    folder: Path, home: SimulatedScene, seed: int, told: Callable[[int, int], None]
+) -> None:
+    """Takes the photos of a tour and writes them with layouts and truth.
+
+    Args:
+        folder: becomes a sequence folder with the true poses and the true plan.
+        home: the tour.
+        seed: of the home's looks, furniture and the camera.
+        told: called with the number of photos done and of all.
+
+    Raises:
+        InputError: a place that cannot be written.
+        MissingExtraError: the `render` extra is not installed.
+    """
+    furnished = float(np.random.default_rng([seed, 1]).uniform(*_FURNISHED))
+    session = Session(furnished, doors_open=True, sharp=True)
+    images = record(folder, home, seed, _QUALITY, width=_WIDTH_PX, session=session, told=told)
+    write_sequence(folder, home.name, home.keyframes, home.truth, home.camera_height_m, images)
