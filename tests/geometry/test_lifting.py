@@ -52,15 +52,33 @@ def test_the_length_at_which_points_lie_on_the_walls_is_told(points):
     surfaces = np.log(np.column_stack([np.hypot(*points[0].T)] * 2))
     surfaces[:8] += 0.7  # furniture before the wall
     surfaces[8:14] -= 0.9  # seen through a door
-    args = (np.full((40, 2), 0.05), np.full(40, 0.9), np.arange(40))
+    solid = np.zeros((40, 2), dtype=bool)
+    args = (np.full((40, 2), 0.05), np.full(40, 0.9), solid, np.arange(40))
     wall = np.zeros(40, dtype=bool)
     told = length_evidence(logs, ranges, surfaces, *args, wall, 9.0, 4.0)
     assert np.exp(logs[np.argmax(told)]) == pytest.approx(2.0, rel=0.03)
     assert told.max() > 30
     # All on the floor is worth no more than one floor.
     assert length_evidence(logs, ranges, surfaces, *args, ~wall, 3.0, 4.0).max() == 4.0
-    information, gradient = length_pull(ranges + np.log(1.94) - surfaces, *args[:2])
+    information, gradient = length_pull(ranges + np.log(1.94) - surfaces, *args[:3])
     assert gradient / information == pytest.approx(np.log(2.0 / 1.94), abs=0.01)
+
+
+def test_points_beyond_a_door_do_not_pull_the_length_onto_its_leaf(points):
+    """Half of what both cameras see lies in one room, as far beyond the doors between them."""
+    logs = np.log(np.arange(0.5, 4.0, 0.02))
+    ranges = np.log(np.column_stack([np.hypot(*points[0].T)] * 2) / 2.0)
+    surfaces = ranges + np.log(2.0)
+    doors = np.zeros((40, 2), dtype=bool)
+    doors[:24] = True
+    surfaces[:24] -= 1.2
+    wall = np.zeros(40, dtype=bool)
+    rest = (np.arange(40), wall, 9.0, 4.0)
+    stated = (np.full((40, 2), 0.05), np.full(40, 0.9))
+    blind = length_evidence(logs, ranges, surfaces, *stated, np.zeros_like(doors), *rest)
+    told = length_evidence(logs, ranges, surfaces, *stated, doors, *rest)
+    assert np.exp(logs[np.argmax(blind)]) == pytest.approx(2.0 * np.exp(-1.2), rel=0.03)
+    assert np.exp(logs[np.argmax(told)]) == pytest.approx(2.0, rel=0.03)
 
 
 def rectangle(width, depth, about, count=256):

@@ -67,7 +67,7 @@ def test_vote_and_refinement_find_one_inlier_among_seven(yaw, direction):
     rng = np.random.default_rng(1)
     matches = np.vstack([true_matches(60, yaw, direction, 2.0, rng), chance_matches(360, rng)])
     prior = np.ones(len(matches))
-    grid = vote(matches, prior, np.zeros(240), 120, SIGMA, 0.1)
+    grid = vote(matches, prior, np.zeros(240), prior, 120, SIGMA, 0.1)
     fit = refine(matches, prior, on_walls(matches), *best_cell(grid), SIGMA, CAPS)
     off = np.array([fit.yaw - yaw, fit.direction - direction])
     off = (off + np.pi) % (2 * np.pi) - np.pi
@@ -92,7 +92,7 @@ def test_chance_alone_gives_little():
     rng = np.random.default_rng(2)
     for _ in range(5):
         matches = chance_matches(400, rng)
-        grid = vote(matches, np.ones(400), np.zeros(240), 120, SIGMA, 0.1)
+        grid = vote(matches, np.ones(400), np.zeros(240), np.ones(400), 120, SIGMA, 0.1)
         fit = refine(matches, np.ones(400), on_walls(matches), *best_cell(grid), SIGMA, CAPS)
         assert fit.evidence < 12
 
@@ -143,5 +143,5 @@ def test_a_prior_of_yaws_decides_between_equals():
     match = np.array([[0.3, -0.4, 0.1, -0.5]])
     yaw_prior = np.zeros(240)
     yaw_prior[80] = 3.0
-    grid = vote(match, np.ones(1), yaw_prior, 120, SIGMA, 0.1)
+    grid = vote(match, np.ones(1), yaw_prior, np.ones(1), 120, SIGMA, 0.1)
     assert np.unravel_index(np.argmax(grid), grid.shape)[0] == 80

@@ -2,8 +2,9 @@
 
 Lengths are camera heights, which a layout knows. A point seen from both cameras lies at ranges that
 are known but for the distance between them; the layout says how far the first surface along each
-of its rays is. Most points lie on it; some lie beyond, seen through a door; some before, on
-furniture. And the walls that two layouts tell must fit one another.
+of its rays is. Most points lie on it; some lie beyond, seen through a door, and most do where the
+layout tells one; some before, on furniture. And the walls that two layouts tell must fit one
+another.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ FloatArray = NDArray[np.float64]
 
 _ON, _BEFORE, _BEYOND, _ANY = 0.45, 0.2, 0.3, 0.05
 """Shares of points on the first surface, before and beyond it, and anywhere."""
+_ON_OPEN, _BEFORE_OPEN, _BEYOND_OPEN = 0.05, 0.05, 0.85
+"""The same where the layout tells a door or an opening in the wall."""
 _BEFORE_SCALE, _BEYOND_WIDTH, _ANY_WIDTH = 0.4, 3.0, 6.0
 """How far they are off then, as logarithms of the range."""
 _TELLING = 0.6
@@ -51,6 +54,7 @@ def length_evidence(
     log_surfaces: FloatArray,
     sigmas: FloatArray,
     inlier: FloatArray,
+    passages: NDArray[np.bool_],
     cells: NDArray[np.int64],
     level: NDArray[np.bool_],
     a_cell: float,
@@ -64,6 +68,7 @@ def length_evidence(
         log_surfaces: (M, 2) those of the first surface along the same rays, NaN where unknown.
         sigmas: (M, 2) standard deviations of their difference.
         inlier: (M,) probability of each match to be one.
+        passages: (M, 2) whether that surface is a door or an opening.
         cells: (M,) cell of the image that each match lies in, from 0.
         level: (M,) whether a match lies on floor or ceiling.
         a_cell: most evidence of a cell, nats.
@@ -74,11 +79,15 @@ def length_evidence(
     """
     out = np.empty(len(log_lengths))
     offs = log_ranges - log_surfaces
-    _length_evidence(log_lengths, offs, sigmas, inlier, cells, level, a_cell, a_level, out)
+    _length_evidence(
+        log_lengths, offs, sigmas, inlier, passages, cells, level, a_cell, a_level, out
+    )
     return out
 
 
-def length_pull(offs: FloatArray, sigmas: FloatArray, inlier: FloatArray) -> tuple[float, float]:
+def length_pull(
+    offs: FloatArray, sigmas: FloatArray, inlier: FloatArray, passages: NDArray[np.bool_]
+) -> tuple[float, float]:
     """Where points pull the logarithm of a length, as least squares has it.
 
     Args:
@@ -86,11 +95,12 @@ def length_pull(offs: FloatArray, sigmas: FloatArray, inlier: FloatArray) -> tup
             unknown.
         sigmas: (M, 2) their standard deviations.
         inlier: (M,) probability of each match to be one.
+        passages: (M, 2) whether that surface is a door or an opening.
 
     Returns:
         Information, and information times the step to the optimum.
     """
-    information, gradient = _length_pull(offs, sigmas, inlier)
+    information, gradient = _length_pull(offs, sigmas, inlier, passages)
     return information, gradient
 
 
@@ -167,35 +177,41 @@ def _triangulate(matches, yaw, direction, sigma, ranges, sigmas):
 
 
 @njit(cache=True)
-def _surface_ratio(off, sigma):
+def _surface_ratio(off, sigma, passage):
     """Likelihood ratio of a point so far off (logarithm of range) the first surface."""
+    on, before, beyond = _ON, _BEFORE, _BEYOND
+    if passage:
+        on, before, beyond = _ON_OPEN, _BEFORE_OPEN, _BEYOND_OPEN
     density = _ANY / _ANY_WIDTH
     if abs(off) < 6.0 * sigma:
-        density += _ON * np.exp(-0.5 * (off / sigma) ** 2) / (sigma * np.sqrt(2.0 * np.pi))
+        density += on * np.exp(-0.5 * (off / sigma) ** 2) / (sigma * np.sqrt(2.0 * np.pi))
     if off < 0.0:
-        density += _BEFORE * np.exp(off / _BEFORE_SCALE) / _BEFORE_SCALE
+        density += before * np.exp(off / _BEFORE_SCALE) / _BEFORE_SCALE
     elif off < _BEYOND_WIDTH:
-        density += _BEYOND / _BEYOND_WIDTH
+        density += beyond / _BEYOND_WIDTH
     return density * _LOG_WIDTH
 
 
 @njit(cache=True)
-def _length_pull(offs, sigmas, inlier):
+def _length_pull(offs, sigmas, inlier, passages):
     information = gradient = 0.0
     for k in range(offs.shape[0]):
         for side in range(2):
             off, sigma = offs[k, side], sigmas[k, side]
             if np.isnan(off) or not abs(off) < 6.0 * sigma:
                 continue
-            on = _ON * np.exp(-0.5 * (off / sigma) ** 2) / (sigma * np.sqrt(2.0 * np.pi))
-            share = inlier[k] * on * _LOG_WIDTH / _surface_ratio(off, sigma)
+            on = _ON_OPEN if passages[k, side] else _ON
+            on *= np.exp(-0.5 * (off / sigma) ** 2) / (sigma * np.sqrt(2.0 * np.pi))
+            share = inlier[k] * on * _LOG_WIDTH / _surface_ratio(off, sigma, passages[k, side])
             information += share / sigma**2
             gradient -= share * off / sigma**2
     return information, gradient
 
 
 @njit(cache=True)
-def _length_evidence(log_lengths, offs, sigmas, inlier, cells, level, a_cell, a_level, out):
+def _length_evidence(
+    log_lengths, offs, sigmas, inlier, passages, cells, level, a_cell, a_level, out
+):
     count = 0
     for cell in cells:
         count = max(count, cell + 1)
@@ -207,7 +223,7 @@ def _length_evidence(log_lengths, offs, sigmas, inlier, cells, level, a_cell, a_
             for side in range(2):
                 off = offs[k, side] + log_lengths[n]
                 if not np.isnan(off):
-                    ratio *= _surface_ratio(off, sigmas[k, side])
+                    ratio *= _surface_ratio(off, sigmas[k, side], passages[k, side])
             sums[int(level[k]), cells[k]] += np.log(1.0 - inlier[k] + inlier[k] * ratio)
         totals = np.zeros(2)
         for surface in range(2):

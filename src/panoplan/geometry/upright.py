@@ -67,6 +67,7 @@ def vote(
     matches: FloatArray,
     prior: FloatArray,
     yaw_prior: FloatArray,
+    weights: FloatArray,
     directions: int,
     sigma: float,
     share: float,
@@ -78,6 +79,7 @@ def vote(
             both elevations of a match of one sign, none 0.
         prior: (M,) likelihood ratio of each match being one at all.
         yaw_prior: (Y,) log prior of the yaws 2π·k/Y.
+        weights: (M,) how much of what each match says counts, 0-1.
         directions: number of directions D, 2π·k/D.
         sigma: standard deviation of an angle, rad, of the matches; half a cell is added.
         share: of the matches that are inliers.
@@ -86,7 +88,7 @@ def vote(
         (Y, D) log likelihood ratio.
     """
     grid = np.repeat(np.asarray(yaw_prior, dtype=np.float64)[:, None], directions, axis=1)
-    _vote(_prepared(matches), prior, sigma, share, grid)
+    _vote(_prepared(matches), prior, weights, sigma, share, grid)
     return grid
 
 
@@ -220,7 +222,7 @@ def _ratio(off_sin, off_cos, variance):
 
 
 @njit(cache=True)
-def _vote(rows, prior, sigma, share, grid):
+def _vote(rows, prior, weights, sigma, share, grid):
     yaws, directions = grid.shape
     half_yaw, half_direction = np.pi / yaws, np.pi / directions
     per_rad = directions / (2.0 * np.pi)
@@ -239,7 +241,8 @@ def _vote(rows, prior, sigma, share, grid):
             peak = share / (1.0 - share) * prior[k] * np.sqrt(2.0 * np.pi / variance)
             for d in range(int(np.ceil(at - reach)), int(np.floor(at + reach)) + 1):
                 off = (d - at) / per_rad
-                grid[y, d % directions] += np.log1p(peak * np.exp(-0.5 * off * off / variance))
+                told = np.log1p(peak * np.exp(-0.5 * off * off / variance))
+                grid[y, d % directions] += weights[k] * told
 
 
 @njit(cache=True)

@@ -8,7 +8,7 @@ import pytest
 from panoplan.config import TourConfig
 from panoplan.geometry.upright import WALL
 from panoplan.poses.tour.features import Features, upright_features
-from panoplan.poses.tour.matching import match
+from panoplan.poses.tour.matching import Matches, match
 from panoplan.poses.tour.twoview import hypotheses
 
 CONFIG = TourConfig(first_octave=0)
@@ -119,3 +119,25 @@ def test_a_blank_image_has_no_features_and_no_hypotheses(two):
     matches = match(two[0], blank, CONFIG)
     assert len(matches) == 0
     assert hypotheses_of(matches) == ()
+
+
+def seen_from(points, heights, yaw, camera):
+    """(N, 4) headings and elevations of points in two cameras, the first at the origin."""
+    angles = []
+    for place, turn in ((np.zeros(2), 0.0), (np.asarray(camera), yaw)):
+        off = points - place
+        heading = np.arctan2(off[:, 0], off[:, 1]) - turn
+        angles += [(heading + np.pi) % (2 * np.pi) - np.pi, np.arctan2(heights, np.hypot(*off.T))]
+    return np.column_stack(angles)
+
+
+def test_one_bookcase_does_not_hide_where_all_else_agrees():
+    rng = np.random.default_rng(0)
+    around = rng.uniform(-3, 3, (20, 2))
+    rest = seen_from(around, rng.choice([-0.5, 0.6], 20), 0.8, [0.9, 0.5])
+    books = np.column_stack([rng.uniform(2.0, 2.3, 400), np.full(400, 2.5)])
+    other = seen_from(books, rng.uniform(-0.5, -0.1, 400), -1.9, [-0.4, 1.1])
+    angles = np.vstack([rest, other]) + np.deg2rad(0.1) * rng.standard_normal((420, 4))
+    best = hypotheses_of(Matches(angles, np.ones(420)))[0]
+    assert best.yaw == pytest.approx(0.8, abs=np.deg2rad(1.0))
+    assert best.direction == pytest.approx(np.arctan2(0.9, 0.5), abs=np.deg2rad(2.0))

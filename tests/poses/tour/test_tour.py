@@ -14,6 +14,7 @@ from panoplan.poses.tour.room import log_surface_ranges, room_seen
 from panoplan.poses.tour.tour import join_tour
 from panoplan.simulate.buildings import l_shape, single_room
 from panoplan.simulate.views import ViewCaster
+from panoplan.types.layout import Spans
 
 HEIGHT = 1.5
 POSES = np.array(
@@ -157,9 +158,22 @@ def test_the_first_surface_is_floor_wall_or_ceiling():
     room = room_seen(Home(0).view([1.0, 1.2, 0.0]).layout, RegistrationConfig())
     # Looking back at the wall 1.2 m away (0.8 camera heights): the floor meets it at 51°.
     heading = np.full(3, np.pi - 1e-3)
-    logs, sigmas, level = log_surface_ranges(room, heading, np.deg2rad([-60.0, -20.0, 70.0]))
+    rays = heading, np.deg2rad([-60.0, -20.0, 70.0])
+    logs, sigmas, level, passage = log_surface_ranges(room, *rays)
     ceiling = (2.5 - HEIGHT) / HEIGHT
     expected = [1 / np.tan(np.deg2rad(60)), 0.8, ceiling / np.tan(np.deg2rad(70))]
     assert np.exp(logs) == pytest.approx(expected, rel=0.02)
     assert level.tolist() == [True, False, True]
+    assert not passage.any()
     assert np.all(sigmas > 0)
+
+
+def test_the_wall_has_a_passage_where_the_layout_tells_a_door():
+    layout = Home(0).view([1.0, 1.2, 0.0]).layout
+    # Over the image's edge, where the wall behind the camera is.
+    spans = Spans(np.array([[layout.width - 20, 30]]), np.empty((0, 2)), np.empty((0, 2)))
+    room = room_seen(replace(layout, spans=spans), RegistrationConfig())
+    heading = np.array([np.pi - 1e-3, -np.pi + 1e-3, 1e-3, np.pi - 1e-3])
+    elevation = np.deg2rad([-20.0, 10.0, -20.0, -60.0])
+    *_, passage = log_surface_ranges(room, heading, elevation)
+    assert passage.tolist() == [True, True, False, False]

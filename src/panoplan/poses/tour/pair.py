@@ -16,7 +16,7 @@ from panoplan.poses.tour.heading import WallHeading, log_yaw_ratio, quarter_diff
 from panoplan.poses.tour.matching import Matches
 from panoplan.poses.tour.room import RoomSeen, log_surface_ranges
 from panoplan.poses.tour.twoview import caps, hypotheses
-from panoplan.types.arrays import FloatArray, IntArray
+from panoplan.types.arrays import BoolArray, FloatArray, IntArray
 
 _LENGTH_STEP = 0.025
 _NEAR_STEPS = 9
@@ -81,6 +81,7 @@ class Pair:
         config: settings.
         log_surfaces: (M, 2) how far the layouts say that the first surface along each match is.
         surface_sigmas: (M, 2) their standard deviations.
+        passages: (M, 2) whether that surface is a wall with a door or an opening.
         surfaces: (M,) WALL, FLOOR or CEILING: the level surface that a match lies on in either.
         cells: (M,) cell of the first panorama in which evidence is capped.
     """
@@ -91,6 +92,7 @@ class Pair:
     config: TourConfig
     log_surfaces: FloatArray = field(init=False)
     surface_sigmas: FloatArray = field(init=False)
+    passages: BoolArray = field(init=False)
     surfaces: IntArray = field(init=False)
     cells: IntArray = field(init=False)
 
@@ -99,15 +101,17 @@ class Pair:
         angles = self.matches.angles
         ranges, sigmas = np.full((2, len(angles), 2), np.nan)
         level = np.zeros(len(angles), dtype=bool)
+        passages = np.zeros((len(angles), 2), dtype=bool)
         for k, room in enumerate((self.a.room, self.b.room)):
             if room is not None:
-                ranges[:, k], sigmas[:, k], on_level = log_surface_ranges(
+                ranges[:, k], sigmas[:, k], on_level, passages[:, k] = log_surface_ranges(
                     room, angles[:, 2 * k], angles[:, 2 * k + 1]
                 )
                 level |= on_level
         cells = np.floor(angles[:, :2] / np.deg2rad(self.config.evidence_cell_deg))
         object.__setattr__(self, "log_surfaces", ranges)
         object.__setattr__(self, "surface_sigmas", sigmas)
+        object.__setattr__(self, "passages", passages)
         side = np.where(angles[:, 1] < 0, FLOOR, CEILING)
         object.__setattr__(self, "surfaces", np.where(level, side, WALL))
         numbers = np.unique(cells, axis=0, return_inverse=True)[1]
@@ -181,6 +185,7 @@ class Pair:
                 np.log(ranges * length) - self.log_surfaces[rows],
                 np.hypot(sigmas, self.surface_sigmas[rows]),
                 inlier[rows],
+                self.passages[rows],
             )
             if told > 0:
                 information[2, 2] = 1.0 / (1.0 / told + config.length_floor**2)
@@ -245,6 +250,7 @@ class Pair:
             self.log_surfaces[rows],
             np.hypot(sigmas, self.surface_sigmas[rows]),
             inlier[rows],
+            self.passages[rows],
             self.cells[rows],
             self.surfaces[rows] != WALL,
             self.config.length_cap,

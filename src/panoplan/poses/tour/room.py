@@ -14,7 +14,7 @@ from panoplan.types.keyframe import Keyframe
 from panoplan.types.layout import Layout
 from panoplan.types.pose import Pose
 
-_WALL_POINTS = 256
+_WALL_POINTS = 128
 
 
 @dataclass(frozen=True, eq=False)
@@ -28,6 +28,7 @@ class RoomSeen:
             unknown.
         profile_sigmas: (B,) relative standard deviations of those.
         ceiling: height above the camera, NaN where unknown.
+        passages: (B,) whether the layout tells a door or an opening there.
     """
 
     points: FloatArray
@@ -35,6 +36,7 @@ class RoomSeen:
     log_profile: FloatArray
     profile_sigmas: FloatArray
     ceiling: float
+    passages: BoolArray
 
 
 def room_seen(layout: Layout, config: RegistrationConfig) -> RoomSeen:
@@ -68,12 +70,24 @@ def room_seen(layout: Layout, config: RegistrationConfig) -> RoomSeen:
         log_profile=log_profile,
         profile_sigmas=np.where(np.isfinite(sigmas), sigmas, worst),
         ceiling=view.ceiling - 1.0,
+        passages=_passages(layout)[at],
     )
+
+
+def _passages(layout: Layout) -> BoolArray:
+    """(W,) columns of a layout's doors and openings."""
+    inside = np.zeros(layout.width, dtype=bool)
+    if layout.spans is not None:
+        columns = np.arange(layout.width)
+        for first, last in (*layout.spans.doors, *layout.spans.openings):
+            within = (columns >= first, columns <= last)
+            inside |= np.logical_and(*within) if first <= last else np.logical_or(*within)
+    return inside
 
 
 def log_surface_ranges(
     room: RoomSeen, headings: FloatArray, elevations: FloatArray
-) -> tuple[FloatArray, FloatArray, BoolArray]:
+) -> tuple[FloatArray, FloatArray, BoolArray, BoolArray]:
     """How far the first surface of a room is along rays: floor, wall or ceiling.
 
     Args:
@@ -83,7 +97,8 @@ def log_surface_ranges(
 
     Returns:
         (M,) logarithms of the horizontal ranges, NaN where the room is not known; (M,) their
-        standard deviations; (M,) whether the surface is floor or ceiling.
+        standard deviations; (M,) whether the surface is floor or ceiling; (M,) whether it is a
+        wall with a door or an opening.
     """
     bins = len(room.log_profile)
     at = ((headings + np.pi) * bins / (2 * np.pi)).astype(int) % bins
@@ -94,7 +109,8 @@ def log_surface_ranges(
     # Where no ceiling is known, walls go on upwards.
     meets = np.isfinite(level) & (level < wall)
     flat = np.where(elevations < 0, _FLOOR_SIGMA, _CEILING_SIGMA)
-    return np.where(meets, level, wall), np.where(meets, flat, sigma), meets
+    passage = room.passages[at] & ~meets
+    return np.where(meets, level, wall), np.where(meets, flat, sigma), meets, passage
 
 
 _FLOOR_SIGMA, _CEILING_SIGMA = 0.02, 0.05

@@ -11,7 +11,7 @@ from panoplan.poses.tour.matching import Matches
 from panoplan.types.arrays import FloatArray, IntArray
 
 _PEAKS = 24
-"""Peaks of the vote that are refined; the vote itself caps no cell, so the best may not lead."""
+"""Peaks of the vote that are refined; the vote weighs cells alike, so the best may not lead."""
 _FEWEST = 4
 
 
@@ -34,7 +34,10 @@ def hypotheses(
         return ()
     sigma = np.deg2rad(config.match_sigma_deg)
     directions = round(360.0 / config.direction_step_deg)
-    grid = vote(matches.angles, matches.prior, yaw_prior, directions, sigma, config.vote_share)
+    weights = _shares_of_cells(matches.angles, config)
+    grid = vote(
+        matches.angles, matches.prior, yaw_prior, weights, directions, sigma, config.vote_share
+    )
     fits = [
         refine(
             matches.angles,
@@ -54,6 +57,20 @@ def hypotheses(
         if fit.evidence > 0 and all(_apart(fit, other) > config.apart_deg for other in kept):
             kept.append(fit)
     return tuple(kept[: config.hypotheses])
+
+
+def _shares_of_cells(angles: FloatArray, config: TourConfig) -> FloatArray:
+    """(M,) weights with which all matches of a cell of either image count as one.
+
+    What many matches of one bookcase say adds up along a curve of yaws and directions, on which
+    no peak would be left for the matches of all other cells together.
+    """
+    most = np.ones(len(angles))
+    for image in (angles[:, :2], angles[:, 2:]):
+        cells = np.floor(image / np.deg2rad(config.evidence_cell_deg))
+        _, own, counts = np.unique(cells, axis=0, return_inverse=True, return_counts=True)
+        most = np.maximum(most, counts[own.reshape(-1)])
+    return 1.0 / most
 
 
 def caps(config: TourConfig) -> Caps:
