@@ -10,9 +10,12 @@ def _group(count, misplaced, median_m=None):
     return {"photos": count, "misplaced": misplaced, **told}
 
 
-def _tour(scene, photos, group):
+def _tour(scene, photos, group, found=None):
+    scores = [{"iou": 0.3, "hits": 6, "true": 6}, {"iou": 0.5, "hits": found, "true": 6}]
     return {
         "scene": scene,
+        "layouts": "files",
+        "plan": found and {"rooms": {"scores": scores}},
         "photos": photos,
         "groups": [group],
         "cpu_seconds": 9.6,
@@ -23,13 +26,13 @@ def _tour(scene, photos, group):
 def test_tours_are_summed_over_photos():
     drawn = {**_tour("", 3, _group(1, [])), "draws": []}
     figures = [
-        {**_tour("one", 8, _group(6, ["a"], 0.123)), "draws": [drawn]},
-        _tour("two", 12, _group(9, [], 0.05)),
+        {**_tour("one", 8, _group(6, ["a"], 0.123), 5), "draws": [drawn]},
+        _tour("two", 12, _group(9, [], 0.05), 3),
     ]
     text = tours([{"benchmark": "tour", "figures": figures, **MACHINE}])
-    assert "| one | 8 | 6 | 1 | 12.3 cm | 12.3 cm | – | 10 s |" in text
-    assert "| one, draw 0 | 3 | 1 | 0 | – | – | – | 10 s |" in text
-    assert "| all | 20 | 15 (75 %) | 1 (6.7 %) |" in text
+    assert "| one | 8 | 6 | 1 | 12.3 cm | 12.3 cm | – | 5 of 6 | 10 s |" in text
+    assert "| one, draw 0 | 3 | 1 | 0 | – | – | – | – | 10 s |" in text
+    assert "| all | 20 | 15 (75 %) | 1 (6.7 %) | – | – | – | 8 of 12 |" in text
 
 
 def test_walks_tell_errors_at_the_end_and_as_given():

@@ -45,20 +45,21 @@ def tours(files: list[dict[str, Any]]) -> str:
     """How many photos of tours were joined, and how well."""
     parts = []
     for data in of_benchmark(files, "tour"):
-        rows = []
-        for f in data["figures"]:
+        rows, whole = [], data["figures"]
+        for f in whole:
             rows.append(_tour(f["scene"], f))
             rows += [_tour(f"{f['scene']}, draw {k}", d) for k, d in enumerate(f["draws"])]
-        whole = data["figures"]
         if len(whole) > 1:
             rows.append(["all", *_together(whole)])
         heads = [
             "tour", "photos", "in the largest group", "misplaced in it", "position, median",
-            "90 %", "heading", "CPU",
+            "90 %", "heading", "rooms of its plan", "CPU",
         ]  # fmt: skip
+        asked = "the network" if whole[0]["layouts"] == "network" else "files"
         parts.append(
-            "Photo tours with layouts from files; misplaced is more than 0.5 m or 6° off with the "
-            f"scale fixed, errors are after a similarity.\n\n{table(heads, rows)}"
+            f"Photo tours with layouts from {asked}; misplaced is more than 0.5 m or 6° off with "
+            "the scale fixed, errors are after a similarity; rooms found at IoU 0.5 of all true "
+            f"ones, the plan rigidly aligned.\n\n{table(heads, rows)}"
         )
     return "\n".join(parts)
 
@@ -74,8 +75,15 @@ def _tour(name: str, figures: dict[str, Any]) -> list[str]:
         number(None if median_m is None else 100 * median_m, 1, " cm"),
         number(None if p90_m is None else 100 * p90_m, 1, " cm"),
         number(largest["heading_deg"], 2, "°"),
+        "–" if figures["plan"] is None else "{} of {}".format(*_rooms(figures["plan"])),
         number(figures["cpu_seconds"], 0, " s"),
     ]
+
+
+def _rooms(plan: dict[str, Any]) -> tuple[int, int]:
+    """Rooms found at IoU 0.5, and true ones."""
+    (half,) = (score for score in plan["rooms"]["scores"] if score["iou"] == 0.5)
+    return half["hits"], half["true"]
 
 
 def _together(tours: Sequence[dict[str, Any]]) -> list[str]:
@@ -83,11 +91,13 @@ def _together(tours: Sequence[dict[str, Any]]) -> list[str]:
     largest = [f["groups"][0] for f in tours]
     joined = sum(group["photos"] for group in largest)
     wrong = sum(len(group["misplaced"]) for group in largest)
+    found = [_rooms(f["plan"]) for f in tours if f["plan"] is not None]
     seconds = sum(f["cpu_seconds"] for f in tours)
     return [
         str(photos),
         f"{joined} ({100 * joined / photos:.0f} %)",
         f"{wrong} ({100 * wrong / max(joined, 1):.1f} %)",
         "–", "–", "–",
+        f"{sum(hits for hits, _ in found)} of {sum(true for _, true in found)}",
         number(seconds, 0, " s"),
     ]  # fmt: skip

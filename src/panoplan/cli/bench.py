@@ -28,10 +28,11 @@ def add_parser(commands: Any) -> None:
         "metric: whether the ± of metres holds. home: on a scene with known truth. misplaced: one "
         "room's cameras of a tour shifted, on simulated flats or on a scene. difficulty: a scene's "
         "real layouts against simulated ones. runtime: time and memory on a long walk. odometry: "
-        "on rendered walks. tour: joining a scene's photos. layouts: a layout network on a folder "
-        "with images and true layouts. realism: what each kind of realism in the renders brings to "
-        "its training. exports: what each format of a scene's plan takes, read back. model: the "
-        "textured model against a scene's photos. table: writes what they measured into a page.",
+        "on rendered walks. tour: joining a scene's photos, and the plan. layouts: a layout "
+        "network on a folder with images and true layouts. realism: what each kind of realism in "
+        "the renders brings to its training. exports: what each format of a scene's plan takes, "
+        "read back. model: the textured model against a scene's photos. table: writes what they "
+        "measured into a page.",
         epilog="example: panoplan bench v1 --methods default --jobs 2 -o v1/",
     )
     parser.add_argument(
@@ -50,7 +51,7 @@ def add_parser(commands: Any) -> None:
         "realism: folder to work in; table: page",
     )
     parser.add_argument(
-        "--model", type=Path, metavar="ONNX", help="layouts: network (default: the one shipped)"
+        "--model", type=Path, metavar="ONNX", help="layouts, tour: network (default: the shipped)"
     )
     parser.add_argument(
         "--flats", type=_count, default=20, metavar="N", help="seeds 0 to N-1 a grade"
@@ -64,6 +65,17 @@ def add_parser(commands: Any) -> None:
         default=0,
         metavar="N",
         help="tour: so often three quarters of the photos are drawn and joined, too",
+    )
+    parser.add_argument(
+        "--rendered",
+        action="store_true",
+        help="tour: of made-up homes (--seeds, default 25-34), photographed into the folder given "
+        "where they are not there yet",
+    )
+    parser.add_argument(
+        "--predict",
+        action="store_true",
+        help="tour: layouts by the network (--model) instead of those in the scenes",
     )
     parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
     parser.add_argument(
@@ -154,7 +166,15 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
         "difficulty": lambda: difficulty.measure(place, config, report, jobs=jobs),
         "runtime": lambda: runtime.measure(config, report),
         "odometry": lambda: odometry.measure(_scenes(place), report),
-        "tour": lambda: tour.measure(_scenes(place), config, options.draws, report),
+        "tour": lambda: tour.measure(
+            tour.rendered(place, options.seeds or tour.RENDERED_SEEDS, report)
+            if options.rendered
+            else _scenes(place),
+            config,
+            options.draws,
+            OnnxLayouts(options.model or SHIPPED, threads=1) if options.predict else None,
+            report,
+        ),
         "layouts": lambda: layouts.measure(
             place, OnnxLayouts(options.model or SHIPPED, threads=1), report
         ),
