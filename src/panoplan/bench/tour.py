@@ -23,7 +23,8 @@ from panoplan.geometry.rigid import heading_of
 from panoplan.intake.layouts import layout_of
 from panoplan.layouts.files import list_layouts, read_layout
 from panoplan.layouts.onnx import OnnxLayouts
-from panoplan.metrics.report import RoomsKind, as_dict, evaluate
+from panoplan.metrics.presentation import as_dict
+from panoplan.metrics.report import RoomsKind, evaluate
 from panoplan.metrics.tour import tour_error
 from panoplan.pipeline import Progress
 from panoplan.poses.tour.features import Features
