@@ -55,7 +55,7 @@ def tours(files: list[dict[str, Any]]) -> str:
             "tour", "photos", "in the largest group", "misplaced in it", "position, median",
             "90 %", "heading", "rooms of its plan", "CPU",
         ]  # fmt: skip
-        asked = "the network" if whole[0]["layouts"] == "network" else "files"
+        asked = "the network" if whole[0].get("layouts") == "network" else "files"
         parts.append(
             f"Photo tours with layouts from {asked}; misplaced is more than 0.5 m or 6° off with "
             "the scale fixed, errors are after a similarity; rooms found at IoU 0.5 of all true "
@@ -75,7 +75,7 @@ def _tour(name: str, figures: dict[str, Any]) -> list[str]:
         number(None if median_m is None else 100 * median_m, 1, " cm"),
         number(None if p90_m is None else 100 * p90_m, 1, " cm"),
         number(largest["heading_deg"], 2, "°"),
-        "–" if figures["plan"] is None else "{} of {}".format(*_rooms(figures["plan"])),
+        "–" if figures.get("plan") is None else "{} of {}".format(*_rooms(figures["plan"])),
         number(figures["cpu_seconds"], 0, " s"),
     ]
 
@@ -91,7 +91,7 @@ def _together(tours: Sequence[dict[str, Any]]) -> list[str]:
     largest = [f["groups"][0] for f in tours]
     joined = sum(group["photos"] for group in largest)
     wrong = sum(len(group["misplaced"]) for group in largest)
-    found = [_rooms(f["plan"]) for f in tours if f["plan"] is not None]
+    found = [_rooms(f["plan"]) for f in tours if f.get("plan") is not None]
     seconds = sum(f["cpu_seconds"] for f in tours)
     return [
         str(photos),

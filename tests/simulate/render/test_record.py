@@ -99,7 +99,7 @@ def test_a_sharp_camera_keeps_what_another_blurs(tmp_path):
     one = replace(home, keyframes=home.keyframes[:1])
     edges = []
     for name, session in (("any", Session(0.0)), ("sharp", Session(0.0, sharp=True))):
-        record(tmp_path / name, one, 5, PREVIEW, width=512, session=session)
+        record(tmp_path / name, one, 8, PREVIEW, width=512, session=session)
         (path,) = (tmp_path / name / "images").iterdir()
         with Image.open(path) as picture:
             grey = np.asarray(picture.convert("L"), dtype=float)

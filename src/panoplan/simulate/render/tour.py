@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -34,14 +34,18 @@ def tour_home(seed: int) -> SimulatedScene:
         InputError: a negative seed.
     """
     building = make_building(_FAMILY, seed)
-    ways, counts, noise, drift = (
-        np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(4)
-    )
-    areas = np.array([room.area for room in building.rooms])
-    more = round(_PHOTOS_A_ROOM * len(areas)) - len(areas)
-    photos = 1 + counts.multinomial(more, areas / areas.sum())
-    way = stills(building, ways, counts=photos.tolist())
+    ways, noise, drift = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(3))
+    way = stills(building, ways, counts=_counts([room.area for room in building.rooms]))
     return recorded(building, way, noise_model(_GRADE), 1.0, noise, drift)
+
+
+def _counts(areas: Sequence[float]) -> list[int]:
+    """Photos of each room: each further one goes where there is most floor a photo."""
+    counts = [1] * len(areas)
+    while sum(counts) < round(_PHOTOS_A_ROOM * len(areas)):
+        floor = [area / count for area, count in zip(areas, counts, strict=True)]
+        counts[int(np.argmax(floor))] += 1
+    return counts
 
 
 def photograph_tour(
