@@ -1026,7 +1026,7 @@ class AdjustConfig:
         0.0015, "The same of the logarithm of its scale, which changes slowly.", low=1e-6, high=1.0
     )
     sigma_factor: float = _setting(
-        1.5,
+        1.35,
         "Factor on the standard deviations of where rooms lie: odometry errs alike over many "
         "steps, which the adjustment takes for independent. Measured on simulated flats.",
         low=0.1,
