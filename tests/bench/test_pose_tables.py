@@ -45,9 +45,10 @@ def test_walks_tell_errors_at_the_end_and_as_given():
         "keyframes_a_cpu_second": 4.56,
         "cpu_s_first": {"median": 0.1, "95 %": 0.2},
         "cpu_s_last": {"median": 0.1, "95 %": 0.25},
+        "plan_lag_s": {"median": 0.9, "95 %": 1.61, "longest": 2.0},
     }
     text = walks([{"benchmark": "odometry", "figures": [figures], **MACHINE}])
-    row = "| one | 300 | 298 in 2 | 40 m | 0.031 % | 0.087 % | 9.0 cm | 4.6 | 1.25 |"
+    row = "| one | 300 | 298 in 2 | 40 m | 0.031 % | 0.087 % | 9.0 cm | 4.6 | 1.25 | 1.6 s |"
     assert row in text
 
 

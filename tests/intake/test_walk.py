@@ -5,6 +5,7 @@ import wave
 import numpy as np
 import pytest
 from PIL import Image
+from tests.networks import brightness_network
 from tests.scenes import exact_layout, yaw
 from tests.walks import box_room, path_poses, picture
 
@@ -12,6 +13,7 @@ from panoplan.cli.main import main
 from panoplan.formats.image import write_jpeg
 from panoplan.formats.layout_npz import write_layout_npz
 from panoplan.formats.plan_json import read_plan
+from panoplan.layouts.onnx import OnnxLayouts
 
 pytest.importorskip("pycolmap", reason="needs the extra images")
 
@@ -143,11 +145,41 @@ def test_photos_of_two_homes_are_two_groups_and_told(photos, tmp_path, capsys):
     shutil.copy(photos / "images" / "p3.jpg", folder / "images" / "p3.jpg")
     other = box_room(-2, 2, -1.5, 1.5, np.random.default_rng(9))
     write_jpeg(folder / "images" / "p4.jpg", picture(other, yaw(0.3), np.array([0.4, 0, 0.3]), 512))
+    with Image.open(folder / "images" / "p3.jpg") as first:
+        first.save(folder / "images" / "p5.jpg", quality=80)
     words = ["run", str(folder), "--layouts", str(photos / "layouts_pred")]
     assert main([*words, "-o", str(tmp_path / "out"), "--camera-height", "1.5"]) == 0
     told = capsys.readouterr().out
     assert "1 of 2 photos have poses in one frame" in told
     assert "1 other groups of 1 photos could not be joined" in told
+    assert "1 images left out" in told
+    skipped = json.loads((tmp_path / "out" / "plan.json").read_text())["skipped"]
+    assert {s["keyframe"]: s["reason"] for s in skipped}["p5"] == "a copy of p3"
     plan = read_plan(tmp_path / "out" / "plan.json")
     assert plan.unit == "m"
     np.testing.assert_allclose(room_size(plan), [3, 4], rtol=0.05)
+
+
+def test_the_network_is_asked_once_a_keyframe(photos, tmp_path, monkeypatch):
+    pytest.importorskip("onnxruntime", reason="needs the extra images")
+    folder, asked = tmp_path / "alone", []
+    shutil.copytree(photos / "images", folder)
+    network = brightness_network(tmp_path / "network.onnx")
+    answer = OnnxLayouts.__call__
+
+    def counted(self, pixels):
+        asked.append(pixels)
+        return answer(self, pixels)
+
+    monkeypatch.setattr(OnnxLayouts, "__call__", counted)
+    monkeypatch.setenv("PANOPLAN_CACHE", str(tmp_path / "cache"))
+    words = ["run", str(folder), "--model", str(network), "--camera-height", "1.5", "--quiet"]
+    first = main([*words, "-o", str(tmp_path / "a")])
+    count = len(json.loads((tmp_path / "a" / "scene" / "sequence.json").read_text())["keyframes"])
+    assert len(asked) == count > 10
+    # From what was kept, the second run has the same pictures.
+    assert main([*words, "-o", str(tmp_path / "b")]) == first
+    assert len(asked) == count
+    for path in sorted((tmp_path / "a" / "scene" / "images").iterdir()):
+        again = tmp_path / "b" / "scene" / "images" / path.name
+        assert path.read_bytes() == again.read_bytes()

@@ -3,48 +3,104 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
 
+from panoplan.cache import Cache
+from panoplan.config import Config
 from panoplan.datasets.detect import image_files
 from panoplan.errors import InputError
+from panoplan.estimator.state import Walk
 from panoplan.formats.sequence import TRUE_TRAJECTORY
 from panoplan.formats.tum import read_tum
 from panoplan.geometry.similarity import fit_similarity
+from panoplan.intake.level_images import LevelImages
+from panoplan.intake.live import LivePlan
 from panoplan.intake.panoramas import Panoramas
+from panoplan.intake.scene_folder import IMAGES
+from panoplan.intake.walk import looker
+from panoplan.layouts.onnx import OnnxLayouts
 from panoplan.pipeline import Progress
 from panoplan.poses.associate import Panorama, associate
 from panoplan.poses.walk.carried import carried
 from panoplan.poses.walk.features import Extractor, sharpness
-from panoplan.poses.walk.follow import HEIGHT, WIDTH, working_grey
+from panoplan.poses.walk.follow import (
+    HEIGHT,
+    WIDTH,
+    Seen,
+    WalkSettings,
+    follow,
+    working_grey,
+)
 from panoplan.poses.walk.keyframes import EVERY_IMAGE, KeyframeChooser
 from panoplan.poses.walk.odometry import Odometry
+from panoplan.types.plan import FloorPlan
 from panoplan.types.pose import Pose, Trajectory
 
 _ENDS = 50
 _GROSS_M, _GROSS_DEG = 0.10, 2.0
 
 
-def measure(folders: Sequence[Path], report: Progress) -> list[dict[str, Any]]:
+def measure(
+    folders: Sequence[Path], config: Config, live: OnnxLayouts | None, report: Progress
+) -> list[dict[str, Any]]:
     """Follows walks and compares with the truth.
 
     Args:
         folders: each with images and trajectory_gt.tum.
+        config: settings of the live plan.
+        live: network with which each walk is followed once more, its plan growing meanwhile; None
+            for no live plan.
         report: is told how far the work has come.
 
     Returns:
         A walk's figures each: keyframes with a pose in the largest map, error of their positions
         after a similarity, in cm and in percent of the way, for the poses at the time they were
-        given and for the final ones; seconds of processor time a keyframe.
+        given and for the final ones; seconds of processor time a keyframe; where asked for, how
+        long after its image was read a keyframe stood in the live plan, seconds of the clock.
 
     Raises:
         InputError: images or true poses are missing.
         MissingExtraError: pycolmap is not installed.
     """
-    return [_walk(folder, report) for folder in folders]
+    walks = []
+    for folder in folders:
+        told = _walk(folder, report)
+        if live is not None:
+            told["plan_lag_s"] = _lags(folder, config, live, report)
+        walks.append(told)
+    return walks
+
+
+def _lags(folder: Path, config: Config, network: OnnxLayouts, report: Progress) -> dict[str, float]:
+    """How long keyframes of the first map took from being read to standing in a plan, seconds."""
+    panoramas = Panoramas.of_images(folder, image_files(folder))
+    mask = carried(panoramas.sample(), WIDTH, HEIGHT)
+    read: dict[str, float] = {}
+    lags: dict[str, float] = {}
+
+    def reading() -> Iterator[Seen]:
+        for seen in panoramas:
+            read[seen.name] = time.perf_counter()
+            yield seen
+
+    def shown(plan: FloorPlan) -> None:
+        now = time.perf_counter()
+        for pose in plan.trajectory:
+            lags.setdefault(pose.id, now - read[pose.id])
+        report(len(read), len(panoramas.images), f"{folder.name}, live")
+
+    with TemporaryDirectory() as work:
+        place = Path(work)
+        look = looker(None, network, LevelImages(place / IMAGES), place, Cache(place / "cache"))
+        plan = LivePlan(config, Walk(), shown, look)
+        follow(reading(), WalkSettings(keyframes=EVERY_IMAGE), mask, plan)
+    values = list(lags.values())
+    return {**_spread(values), "longest": max(values, default=0.0)}
 
 
 def _walk(folder: Path, report: Progress) -> dict[str, Any]:

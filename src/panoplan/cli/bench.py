@@ -51,7 +51,10 @@ def add_parser(commands: Any) -> None:
         "realism: folder to work in; table: page",
     )
     parser.add_argument(
-        "--model", type=Path, metavar="ONNX", help="layouts, tour: network (default: the shipped)"
+        "--model",
+        type=Path,
+        metavar="ONNX",
+        help="layouts, tour, odometry: network (default: the shipped)",
     )
     parser.add_argument(
         "--flats", type=_count, default=20, metavar="N", help="seeds 0 to N-1 a grade"
@@ -76,6 +79,11 @@ def add_parser(commands: Any) -> None:
         "--predict",
         action="store_true",
         help="tour: layouts by the network (--model) instead of those in the scenes",
+    )
+    parser.add_argument(
+        "--live",
+        action="store_true",
+        help="odometry: also how far a plan that grows meanwhile lags behind (--model)",
     )
     parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
     parser.add_argument(
@@ -165,7 +173,12 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
         ),
         "difficulty": lambda: difficulty.measure(place, config, report, jobs=jobs),
         "runtime": lambda: runtime.measure(config, report),
-        "odometry": lambda: odometry.measure(_scenes(place), report),
+        "odometry": lambda: odometry.measure(
+            _scenes(place),
+            config,
+            OnnxLayouts(options.model or SHIPPED) if options.live else None,
+            report,
+        ),
         "tour": lambda: tour.measure(
             tour.rendered(place, options.seeds or tour.RENDERED_SEEDS, report)
             if options.rendered

@@ -8,15 +8,17 @@ from collections.abc import Callable
 from panoplan.config import Config
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
-from panoplan.poses.walk.follow import PlacedKeyframe, Seen
+from panoplan.poses.walk.follow import PlacedKeyframe
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.layout import Layout
 from panoplan.types.plan import FloorPlan
 
-LayoutOf = Callable[[Seen], Layout | None]
+LayoutOf = Callable[[PlacedKeyframe], Layout | None]
 Follower = Callable[[PlacedKeyframe], None]
 """Is told each keyframe of a walk that got its pose."""
-_SHOW_EVERY_S = 2.0
+_SHOW_EVERY_S = 1.0
+_LEAST_PAUSE = 4.0
+"""Times what showing took: four fifths of the time are left for the walk."""
 
 
 def not_followed(layout_of: LayoutOf) -> Follower:
@@ -32,8 +34,8 @@ class LivePlan:
     Args:
         config: settings.
         walk: what is known of the walk.
-        show: is given the plan every two seconds at most.
-        layout_of: looks at a panorama; None where it shows no room.
+        show: is given the plan every second, or more seldom where that takes long.
+        layout_of: looks at a keyframe; None where it shows no room.
     """
 
     def __init__(
@@ -45,14 +47,16 @@ class LivePlan:
     ) -> None:
         self._estimator = FloorPlanEstimator(config, walk)
         self._layout_of, self._show = layout_of, show
-        self._shown_at = time.monotonic()
+        self._due = time.monotonic() + _SHOW_EVERY_S
 
     def __call__(self, placed: PlacedKeyframe) -> None:
         """Takes a keyframe that got its pose."""
         if placed.map != 0:
             return
-        keyframe = Keyframe(placed.seen.name, placed.pose, self._layout_of(placed.seen))
+        keyframe = Keyframe(placed.seen.name, placed.pose, self._layout_of(placed))
         self._estimator.update(keyframe)
-        if time.monotonic() - self._shown_at >= _SHOW_EVERY_S:
+        began = time.monotonic()
+        if began >= self._due:
             self._show(self._estimator.plan())
-            self._shown_at = time.monotonic()
+            ended = time.monotonic()
+            self._due = ended + max(_SHOW_EVERY_S, _LEAST_PAUSE * (ended - began))

@@ -17,7 +17,7 @@ from panoplan.datasets.folder import open_folder
 from panoplan.datasets.scene import Scene
 from panoplan.errors import InputError
 from panoplan.formats.atomic import make_folder
-from panoplan.formats.image import read_panorama, write_jpeg
+from panoplan.formats.image import read_panorama, resized, write_jpeg
 from panoplan.intake.given import Given
 from panoplan.intake.layouts import open_network, predict, with_reasons
 from panoplan.intake.panoramas import Panoramas
@@ -34,6 +34,9 @@ from panoplan.types.pose import Trajectory
 _STAGE = "tour 1"
 _PAIRS_LOOKED_AT = 12
 _WALK_SHARE = 0.12
+_LOOK_PX = (128, 64)
+_COPY_LEVELS = 1.0
+"""Two photos are copies of one whose small pictures differ by less, grey levels in the mean."""
 
 
 def is_tour(panoramas: Panoramas) -> bool:
@@ -88,8 +91,15 @@ def open_tour(
         MissingExtraError: what finds poses or layouts is not installed.
     """
     make_folder(work / IMAGES)
-    images = {}
+    images: dict[str, Path] = {}
+    looks: dict[str, NDArray[np.int16]] = {}
     for seen in panoramas:
+        look = resized(seen.pixels, *_LOOK_PX).astype(np.int16)
+        twin = next((name for name in looks if _alike(looks[name], look)), None)
+        if twin is not None:
+            panoramas.left_out[seen.name] = f"a copy of {twin}"
+            continue
+        looks[seen.name] = look
         images[seen.name] = work / IMAGES / f"{seen.name}.jpg"
         write_jpeg(images[seen.name], seen.pixels)
         progress(len(images), len(panoramas.images), "photos")
@@ -116,6 +126,11 @@ def open_tour(
     scene = replace(scene, kind="photo tour", skipped=(*scene.skipped, *left.items()))
     lines = _lines(groups, reasons, panoramas)
     return scene, Report(lines) if given.camera_height_m is None else Report(lines, "m")
+
+
+def _alike(one: NDArray[np.int16], other: NDArray[np.int16]) -> bool:
+    """Whether two small pictures differ by no more than a file's compression makes."""
+    return bool(np.abs(one - other).mean() < _COPY_LEVELS)
 
 
 class _Greys(Mapping[str, NDArray[np.uint8]]):

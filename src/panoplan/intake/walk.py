@@ -16,14 +16,15 @@ from panoplan.datasets.folder import open_folder
 from panoplan.datasets.scene import Scene
 from panoplan.errors import InputError
 from panoplan.formats.atomic import make_folder
-from panoplan.formats.image import write_jpeg
-from panoplan.geometry.panorama import turned
+from panoplan.formats.sequence import LAYOUTS
 from panoplan.intake.given import Given
-from panoplan.intake.layouts import layout_of, open_network, predict, with_reasons
+from panoplan.intake.layouts import open_network, predict, with_reasons
+from panoplan.intake.level_images import LevelImages
 from panoplan.intake.live import Follower, LayoutOf
 from panoplan.intake.panoramas import Panoramas
 from panoplan.intake.scene_folder import IMAGES, Report, plain, trajectory_of, write_scene
 from panoplan.layouts.files import list_layouts, read_layout
+from panoplan.layouts.images import predict_layout
 from panoplan.layouts.onnx import OnnxLayouts
 from panoplan.pipeline import Progress
 from panoplan.poses.level import level, tilts_deg, upright
@@ -37,10 +38,10 @@ from panoplan.poses.walk.follow import (
     follow,
 )
 from panoplan.poses.walk.keyframes import EVERY_IMAGE
+from panoplan.types.layout import Layout
 from panoplan.types.pose import Trajectory
 
-_STAGE = "walk 1"
-_LEVEL_DEG = 0.5
+_STAGE = "walk 2"
 
 
 def open_walk(
@@ -70,12 +71,14 @@ def open_walk(
     """
     layouts = given.layouts or own_layouts(given.path)
     network = None if layouts is not None else open_network(given.model, given.averaging)
-    look = _looker(layouts, network)
-    walked, masked = _followed(panoramas, cache, progress, live(look))
+    pictures = LevelImages(work / IMAGES)
+    look = looker(layouts, network, pictures, work, cache)
+    walked, masked = _followed(panoramas, cache, progress, live(look), pictures)
     poses, _ = level(_largest_map(walked, panoramas))
     tilts = tilts_deg(poses.rotations)
+    pictures.complete(panoramas, poses, progress)
     stand = Trajectory(poses.labels, upright(poses.rotations), poses.translations)
-    _write_keyframes(panoramas, poses, stand, work, progress)
+    write_scene(work, panoramas.source, stand)
     if network is not None:
         images = {name: work / IMAGES / f"{name}.jpg" for name in poses.labels}
         predicted = predict(images, network, panoramas.source, work, cache, progress)
@@ -104,13 +107,39 @@ def _largest_map(walked: Walked, panoramas: Panoramas) -> Trajectory:
     raise InputError(panoramas.source, found, "panoramas of rooms")
 
 
-def _looker(layouts: Path | None, network: OnnxLayouts | None) -> LayoutOf:
-    """What finds the layout of a panorama: a folder of files, or a network."""
-    if network is not None:
-        return lambda seen: layout_of(network, seen.pixels)
-    assert layouts is not None
-    files = list_layouts(layouts)
-    return lambda seen: read_layout(files[seen.name]) if seen.name in files else None
+def looker(
+    layouts: Path | None,
+    network: OnnxLayouts | None,
+    pictures: LevelImages,
+    work: Path,
+    cache: Cache,
+) -> LayoutOf:
+    """What finds the layout of a keyframe: a folder of files, or a network.
+
+    The network sees the level picture, and what it says of it is kept: it is not asked again.
+
+    Args:
+        layouts: folder of files, where there is no network.
+        network: of layouts, or None.
+        pictures: get each keyframe's.
+        work: gets the layouts.
+        cache: of what was computed before.
+    """
+    if network is None:
+        assert layouts is not None
+        known = list_layouts(layouts)
+        return lambda placed: (
+            read_layout(known[placed.seen.name]) if placed.seen.name in known else None
+        )
+    asked, folder = network, work / LAYOUTS
+    make_folder(folder)
+
+    def look(placed: PlacedKeyframe) -> Layout | None:
+        picture = pictures.add(placed.seen, placed.pose)
+        file = folder / f"{placed.seen.name}.npz"
+        return None if predict_layout(picture, file, asked, cache) else read_layout(file)
+
+    return look
 
 
 def _followed(
@@ -118,14 +147,19 @@ def _followed(
     cache: Cache,
     progress: Progress,
     placed: Callable[[PlacedKeyframe], None],
+    pictures: LevelImages,
 ) -> tuple[Walked, float]:
-    """The walk's poses and the share of its images that the camera carries along."""
+    """The walk's poses and the share of its images that the camera carries along.
+
+    How `pictures` were turned meanwhile is kept, too.
+    """
     settings = WalkSettings() if not panoramas.images else WalkSettings(keyframes=EVERY_IMAGE)
     key = content_key(_STAGE, repr(settings), panoramas.digest())
     known = cache.read(key)
     if known is not None:
         data = json.loads(known)
         panoramas.left_out.update(data["left_out"])
+        pictures.turns = {name: np.array(turn) for name, turn in data["turns"].items()}
         return _walked(data), data["masked"]
     mask = carried(panoramas.sample(), WIDTH, HEIGHT)
 
@@ -135,30 +169,11 @@ def _followed(
 
     walked = follow(panoramas, settings, mask, told)
     masked = 0.0 if mask is None else float(mask.mean())
-    data = {**_plain(walked), "left_out": panoramas.left_out, "masked": masked}
+    turns = {name: turn.tolist() for name, turn in pictures.turns.items()}
+    more = {"left_out": panoramas.left_out, "masked": masked, "turns": turns}
+    data = {**_plain(walked), **more}
     cache.write(key, json.dumps(data).encode())
     return walked, masked
-
-
-def _write_keyframes(
-    panoramas: Panoramas, poses: Trajectory, stand: Trajectory, work: Path, progress: Progress
-) -> None:
-    """Writes level keyframes, their poses and sequence.json, which comes last."""
-    make_folder(work / IMAGES)
-    numbers = {name: k for k, name in enumerate(poses.labels)}
-    tilts = tilts_deg(poses.rotations)
-    done = 0
-    for seen in panoramas:
-        k = numbers.get(seen.name)
-        if k is None:
-            continue
-        pixels = seen.pixels
-        if tilts[k] > _LEVEL_DEG:
-            pixels = turned(pixels, poses.rotations[k].T @ stand.rotations[k])
-        write_jpeg(work / IMAGES / f"{seen.name}.jpg", pixels)
-        done += 1
-        progress(done, len(numbers), "keyframes")
-    write_scene(work, panoramas.source, stand)
 
 
 def _report(walked: Walked, masked: float, tilts: Any, panoramas: Panoramas) -> Report:

@@ -77,15 +77,37 @@ def predict_layouts(
     make_folder(folder)
     files, left_out = {}, []
     for done, (name, path) in enumerate(images.items(), start=1):
-        answer = _answer(path, network, cache)
-        if answer.startswith(_LEFT_OUT):
-            left_out.append((name, answer.removeprefix(_LEFT_OUT).decode()))
+        file = folder / f"{name}.npz"
+        reason = predict_layout(path, file, network, cache)
+        if reason is None:
+            files[name] = file
         else:
-            files[name] = folder / f"{name}.npz"
-            write_bytes(files[name], answer)
+            left_out.append((name, reason))
         progress(done, len(images))
     cache.trim()
     return Predicted(files, tuple(left_out))
+
+
+def predict_layout(path: Path, file: Path, network: OnnxLayouts, cache: Cache) -> str | None:
+    """Writes the layout file of one image.
+
+    Args:
+        path: the image.
+        file: to write.
+        network: the layout network.
+        cache: where answers about these bytes by this network are kept.
+
+    Returns:
+        Why there is none, else None.
+
+    Raises:
+        InputError: as `predict_layouts`.
+    """
+    answer = _answer(path, network, cache)
+    if answer.startswith(_LEFT_OUT):
+        return answer.removeprefix(_LEFT_OUT).decode()
+    write_bytes(file, answer)
+    return None
 
 
 def _answer(path: Path, network: OnnxLayouts, cache: Cache) -> bytes:

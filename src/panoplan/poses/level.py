@@ -36,11 +36,11 @@ def level(trajectory: Trajectory) -> tuple[Trajectory, FloatArray]:
 
 def gravity(trajectory: Trajectory) -> FloatArray:
     """(3,) unit vector of gravity in the world: the cameras' median down axis."""
-    return _median_direction(trajectory.rotations[:, :, 1])
+    return median_direction(trajectory.rotations[:, :, 1])
 
 
-def _median_direction(directions: FloatArray) -> FloatArray:
-    """Geometric median of (N, 3) unit vectors, by Weiszfeld's iteration from their mean.
+def median_direction(directions: FloatArray) -> FloatArray:
+    """(3,) geometric median of (N, 3) unit vectors, by Weiszfeld's iteration from their mean.
 
     Each iterate turns with the directions, so the answer does however far it has converged.
     """
@@ -63,6 +63,20 @@ def _smallest_turn(down: FloatArray) -> FloatArray:
     ax, az = -z / sin, x / sin
     skew = np.array([[0, -az, 0], [az, 0, -ax], [0, ax, 0]])
     return np.asarray(np.eye(3) + sin * skew + (1 - y) * (skew @ skew))
+
+
+def level_turn(rotation: FloatArray, gravity: FloatArray) -> FloatArray:
+    """The turn that sets a camera upright, its heading kept.
+
+    Args:
+        rotation: (3, 3) world_from_cam.
+        gravity: (3,) unit vector in that world.
+
+    Returns:
+        (3, 3) cam_from_level.
+    """
+    stands = _smallest_turn(gravity) @ rotation
+    return np.asarray(stands.T @ upright(stands[None])[0])
 
 
 def upright(rotations: FloatArray) -> FloatArray:
