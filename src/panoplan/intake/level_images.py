@@ -18,7 +18,7 @@ from panoplan.types.pose import Pose, Trajectory
 
 _LEVEL_DEG = 0.5
 """A camera tilted by less is taken as level."""
-_SAME_DEG = 0.25
+_SAME_DEG = 0.5
 """A picture turned by so much more or less is as good."""
 
 
@@ -29,11 +29,10 @@ class LevelImages:
     written where the adjusted poses say the same.
 
     Args:
-        folder: for NAME.jpg.
+        folder: for NAME.jpg; made with the first one.
     """
 
     def __init__(self, folder: Path) -> None:
-        make_folder(folder)
         self._folder = folder
         self.turns: dict[str, FloatArray] = {}
         self._written: set[str] = set()
@@ -81,6 +80,7 @@ class LevelImages:
 
     def _write(self, seen: Seen, turn: FloatArray) -> Path:
         level = _angle_deg(turn) <= _LEVEL_DEG
+        make_folder(self._folder)
         path = self._folder / f"{seen.name}.jpg"
         write_jpeg(path, seen.pixels if level else turned(seen.pixels, turn))
         self.turns[seen.name] = turn

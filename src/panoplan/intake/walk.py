@@ -116,7 +116,8 @@ def looker(
 ) -> LayoutOf:
     """What finds the layout of a keyframe: a folder of files, or a network.
 
-    The network sees the level picture, and what it says of it is kept: it is not asked again.
+    The network sees the level picture, and what it says of it is kept: it is asked again only
+    where the picture is turned otherwise in the end.
 
     Args:
         layouts: folder of files, where there is no network.
@@ -132,9 +133,9 @@ def looker(
             read_layout(known[placed.seen.name]) if placed.seen.name in known else None
         )
     asked, folder = network, work / LAYOUTS
-    make_folder(folder)
 
     def look(placed: PlacedKeyframe) -> Layout | None:
+        make_folder(folder)
         picture = pictures.add(placed.seen, placed.pose)
         file = folder / f"{placed.seen.name}.npz"
         return None if predict_layout(picture, file, asked, cache) else read_layout(file)
