@@ -71,6 +71,17 @@ def test_pages_that_cannot_be_filled(page, text, told):
         update(page, page.parent / "results")
 
 
+def test_where_each_file_is_from(page):
+    _file(page.parent / "results", "a.json")
+    _file(page.parent / "results", "b.json", "sound", commit=None)
+    page.write_text(PAGE.replace("runtime", "files"))
+    update(page, page.parent / "results")
+    assert [line for line in page.read_text().splitlines() if line.startswith("| ")][2:] == [
+        "| `a.json` | default | abc | 2 cores, a processor |",
+        "| `b.json` | sound | – | 2 cores, a processor |",
+    ]
+
+
 @pytest.mark.parametrize("settings", [None, {"preset": "best"}])
 def test_a_file_that_is_no_benchmark(settings, page):
     if settings is None:

@@ -29,7 +29,7 @@ def update(page: Path, folder: Path) -> bool:
             with commas, are of the tables that come between: buildings,
             methods, shapes, scale, sweeps, causes, difficulty, errors, flats, metric,
             home, misplaced, layouts, realism, exports, areas, model, runtime,
-            walks, tours.
+            walks, tours, files.
         folder: of the benchmark files.
 
     Returns:
@@ -88,6 +88,7 @@ def updated(text: str, folder: Path, page: Path) -> str:
         "runtime": _runtime,
         "walks": pose_tables.walks,
         "tours": pose_tables.tours,
+        "files": _files,
     }
 
     def filled(marks: re.Match[str]) -> str:
@@ -106,10 +107,27 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         data = json.loads(read_bytes(path, _LIMIT))
         METHODS.index(data["settings"]["preset"])
-        _ = data["benchmark"], data["figures"], data["commit"]
+        _ = data["benchmark"], data["figures"], data["commit"], data["machine"]
     except (ValueError, KeyError, TypeError):
         raise InputError(path, "no benchmark file", "what panoplan bench writes") from None
-    return dict(data)
+    return {**data, "file": path.name}
+
+
+def _files(files: list[dict[str, Any]]) -> str:
+    """Where each file is from."""
+    rows = []
+    for data in files:
+        machine = data["machine"]
+        settings = data["settings"]["preset"]
+        rows.append(
+            [
+                f"`{data['file']}`",
+                settings,
+                data["commit"] or "–",
+                f"{machine['cores']} cores, {machine['processor']}",
+            ]
+        )
+    return table(["file", "settings", "commit", "machine"], rows) if rows else ""
 
 
 def _flats(files: list[dict[str, Any]]) -> str:

@@ -48,7 +48,9 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         group.add_argument(
             flag, dest="studies", action="append_const", const=study, help=f"{told}, not Table II"
         )
-    group.add_argument("--all", action="store_true", help="Table II and all of these")
+    group.add_argument(
+        "--all", action="store_true", help="Table II and all of these (about 5 h CPU)"
+    )
     group.add_argument(
         "--ray", metavar="ADDRESS", help="works on a Ray cluster instead of --jobs processes"
     )

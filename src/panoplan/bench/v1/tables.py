@@ -10,6 +10,7 @@ import numpy as np
 from panoplan.bench.markdown import number, pair, table
 from panoplan.bench.record import METHODS
 from panoplan.bench.v1.differences import Difference, difference
+from panoplan.bench.v1.predict import POINTS
 from panoplan.bench.v1.published import TABLE_I, TABLE_II, TABLE_III
 from panoplan.bench.v1.score import column
 from panoplan.errors import InputError
@@ -212,7 +213,7 @@ def _methods_of(scenes_of: str, found: dict[str, _Shares]) -> str:
             count = summary["scenes"]
             rows.append(
                 [
-                    f"{method}, {100 * float(share):.0f} %",
+                    _row((method, share)),
                     *(_found(aligned, f"rooms_{iou}") for iou in (30, 50, 70)),
                     _found(aligned, "corners"),
                     *(_found(unaligned, f"rooms_{iou}") for iou in (50, 70)),
@@ -234,7 +235,11 @@ def _methods_of(scenes_of: str, found: dict[str, _Shares]) -> str:
 
 
 def _differences_of(found: dict[str, _Shares]) -> str:
-    pairs = [(("default", "0.2"), (method, "0.2")) for method in found if method != "default"]
+    pairs = [
+        (("default", "0.2"), (method, "1" if method == POINTS else "0.2"))
+        for method in found
+        if method != "default"
+    ]
     pairs += [((method, "1"), (method, "0.2")) for method in ("paper", "default")]
     rows = []
     for this, that in pairs:
@@ -259,7 +264,8 @@ def _differences_of(found: dict[str, _Shares]) -> str:
 
 
 def _row(of: tuple[str, str]) -> str:
-    return f"{of[0]} {100 * float(of[1]):.0f} %"
+    method, share = of
+    return method if method == POINTS else f"{method} {100 * float(share):.0f} %"
 
 
 def _same_scenes(one: dict[str, Any], other: dict[str, Any]) -> None:
