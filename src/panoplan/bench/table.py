@@ -107,7 +107,7 @@ def _read(path: Path) -> dict[str, Any]:
     try:
         data = json.loads(read_bytes(path, _LIMIT))
         METHODS.index(data["settings"]["preset"])
-        _ = data["benchmark"], data["figures"], data["commit"], data["machine"]
+        _ = data["benchmark"], data["figures"], data["commit"]
     except (ValueError, KeyError, TypeError):
         raise InputError(path, "no benchmark file", "what panoplan bench writes") from None
     return {**data, "file": path.name}
@@ -117,16 +117,10 @@ def _files(files: list[dict[str, Any]]) -> str:
     """Where each file is from."""
     rows = []
     for data in files:
-        machine = data["machine"]
-        settings = data["settings"]["preset"]
-        rows.append(
-            [
-                f"`{data['file']}`",
-                settings,
-                data["commit"] or "–",
-                f"{machine['cores']} cores, {machine['processor']}",
-            ]
-        )
+        machine = data.get("machine")
+        told = f"{machine['cores']} cores, {machine['processor']}" if machine else "–"
+        preset = data["settings"]["preset"]
+        rows.append([f"`{data['file']}`", preset, data["commit"] or "–", told])
     return table(["file", "settings", "commit", "machine"], rows) if rows else ""
 
 
