@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Sequence
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -15,7 +16,7 @@ from panoplan.config import Config
 from panoplan.datasets.detect import image_files
 from panoplan.errors import InputError
 from panoplan.estimator.state import Walk
-from panoplan.formats.sequence import TRUE_TRAJECTORY
+from panoplan.formats.sequence import DESCRIPTION, TRUE_TRAJECTORY
 from panoplan.formats.tum import read_tum
 from panoplan.geometry.similarity import fit_similarity
 from panoplan.intake.level_images import LevelImages
@@ -38,11 +39,51 @@ from panoplan.poses.walk.follow import (
 )
 from panoplan.poses.walk.keyframes import EVERY_IMAGE, KeyframeChooser
 from panoplan.poses.walk.odometry import Odometry
+from panoplan.simulate.render.filmed import TROUBLES, film_badly, film_walk, filmed_home
 from panoplan.types.plan import FloorPlan
 from panoplan.types.pose import Pose, Trajectory
 
 _ENDS = 50
 _GROSS_M, _GROSS_DEG = 0.10, 2.0
+RENDERED_SEEDS = range(25, 28)
+"""Buildings of the walks that figures are reported of."""
+_LOOKS = 2
+
+
+def rendered(folder: Path, progress: Progress) -> list[Path]:
+    """Walks of 300 frames through made-up homes, rendered where they are not there yet.
+
+    Args:
+        folder: gets a sequence folder a walk: three buildings with two looks each, and the first
+            of them with each of the troubles that pictures can have.
+        progress: is told how far the work has come.
+
+    Returns:
+        The folders.
+
+    Raises:
+        InputError: a place that cannot be written.
+        MissingExtraError: the `render` extra is not installed.
+    """
+    folders = []
+    for seed in RENDERED_SEEDS:
+        walk = filmed_home(seed)
+        for look in range(_LOOKS):
+            place = folder / f"walk_{seed}_look_{look}"
+            folders.append(place)
+            if not (place / DESCRIPTION).exists():
+                told = partial(_rendering, progress, place.name)
+                film_walk(place, walk, len(RENDERED_SEEDS) * look + seed, told)
+    for trouble in TROUBLES:
+        place = folder / f"{folders[0].name}_{trouble}"
+        if not place.exists():
+            film_badly(folders[0], place, trouble, 0)
+        folders.append(place)
+    return folders
+
+
+def _rendering(progress: Progress, name: str, done: int, total: int) -> None:
+    progress(done, total, f"rendering {name}")
 
 
 def measure(

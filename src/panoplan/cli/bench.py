@@ -73,7 +73,7 @@ def add_parser(commands: Any) -> None:
         "--rendered",
         action="store_true",
         help="tour: of made-up homes (--seeds, default 25-34), photographed into the folder given "
-        "where they are not there yet",
+        "where they are not there yet; odometry: walks through such homes, well and badly filmed",
     )
     parser.add_argument(
         "--predict",
@@ -174,7 +174,7 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
         "difficulty": lambda: difficulty.measure(place, config, report, jobs=jobs),
         "runtime": lambda: runtime.measure(config, report),
         "odometry": lambda: odometry.measure(
-            _scenes(place),
+            odometry.rendered(place, report) if options.rendered else _scenes(place),
             config,
             OnnxLayouts(options.model or SHIPPED) if options.live else None,
             report,
