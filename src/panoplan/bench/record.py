@@ -8,6 +8,7 @@ import os
 import platform
 import subprocess
 from collections.abc import Mapping, Sequence
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -28,7 +29,7 @@ def record(name: str, settings: Mapping[str, Any], figures: Any) -> dict[str, An
     return {
         "benchmark": name,
         "version": __version__,
-        "commit": _commit(),
+        "commit": commit(),
         "machine": {
             "processor": _processor(),
             "cores": os.cpu_count(),
@@ -69,7 +70,13 @@ def of_benchmark(records: Sequence[dict[str, Any]], name: str) -> list[dict[str,
     return sorted(chosen, key=lambda data: METHODS.index(data["settings"]["preset"]))
 
 
-def _commit() -> str | None:
+@cache
+def commit() -> str | None:
+    """The commit of the code, "-dirty" where it was changed since; None where nobody knows.
+
+    It is that of the first call: who calls it before a long measurement learns what was measured,
+    even if the tree goes on meanwhile.
+    """
     here = Path(__file__).parent
     try:
         done = subprocess.run(

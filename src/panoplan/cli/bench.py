@@ -108,6 +108,9 @@ def add_parser(commands: Any) -> None:
 
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
+    from panoplan.bench.record import commit, record, to_json
+
+    commit()
     if options.what == "v1" or (options.what is None and options.dataset is not None):
         return bench_v1.act(options)
     if options.what is None:
@@ -125,7 +128,6 @@ def act(options: argparse.Namespace) -> int:
         return 0
     if options.output is not None and not options.output.parent.is_dir():
         raise InputError(options.output, "no folder for it", "a file in a folder that exists")
-    from panoplan.bench.record import record, to_json
     from panoplan.config import as_dict
 
     config = settings.resolve(options)
