@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import multiprocessing
 import os
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager
 from typing import Protocol, TypeVar
-from unittest.mock import patch
 
 from panoplan.errors import PanoplanError
 
@@ -18,6 +18,21 @@ Result = TypeVar("Result")
 
 _ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 """As many threads as processes, for linear algebra that would take all processors in each."""
+
+
+@contextmanager
+def _environment(values: Mapping[str, str]) -> Iterator[None]:
+    """Environment variables for processes that begin meanwhile."""
+    before = {name: os.environ.get(name) for name in values}
+    os.environ.update(values)
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
 
 
 class Workers(Protocol):
@@ -54,7 +69,7 @@ def processes(jobs: int) -> Workers:
         # Fresh processes: forked ones would inherit the threads of the progress display.
         context = multiprocessing.get_context("spawn")
         with (
-            patch.dict(os.environ, _ONE_THREAD),
+            _environment(_ONE_THREAD),
             ProcessPoolExecutor(min(jobs, len(work)), mp_context=context) as pool,
         ):
             place = {pool.submit(function, item): number for number, item in enumerate(work)}
