@@ -7,6 +7,7 @@ import pytest
 
 from panoplan.bench import realism
 from panoplan.bench.table import updated
+from panoplan.errors import InputError
 from panoplan.layouts.network.samples import TARGETS
 from panoplan.simulate.render.scene import PREVIEW
 
@@ -60,3 +61,11 @@ def test_a_small_run_trains_each_and_goes_on(tmp_path, monkeypatch):
     count = len(told)
     assert realism.measure(tmp_path, lambda done, total, now="": told.append(0)) == figures
     assert len(told) == count + 2
+
+
+def test_a_folder_of_another_training_is_refused(tmp_path):
+    pytest.importorskip("torch", reason="the extra train is not installed")
+    np.save(tmp_path / "targets-0000003.npy", np.zeros((512, len(TARGETS), 8)))
+    with pytest.raises(InputError, match="found 512 panoramas; expected 256: a folder of its own"):
+        realism.measure(tmp_path, lambda done, total, now="": None)
+    assert len(list(tmp_path.iterdir())) == 1

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from panoplan.bench.layouts import ROWS, SMALL_CH2
-from panoplan.errors import MissingExtraError
+from panoplan.errors import InputError, MissingExtraError
 from panoplan.pipeline import Progress
 from panoplan.types.arrays import BoolArray, FloatArray
 
@@ -20,13 +20,13 @@ LEARNT, JUDGED = 256, 96
 STEPS = 160
 _PER_LEARNT_HOME, _PER_JUDGED_HOME = 8, 4
 _BATCH, _RATE, _WARM_UP, _AVERAGE = 16, 1.5e-3, 40, 0.98
-_HOURS = 24 * 60.0
+_MOST_MINUTES = 24 * 60.0
 _BOOTSTRAPS, _INTERVAL = 2000, (5.0, 95.0)
 
 
 @dataclass(frozen=True)
 class _Run:
-    """A training: what it goes without, and the seed of its homes and of their order."""
+    """A training: what it goes without, and the seed of its homes, their order and its head."""
 
     name: str
     without: tuple[str, ...] = ()
@@ -38,10 +38,12 @@ def measure(work: Path, progress: Progress) -> dict[str, Any]:
 
     All see equally many panoramas in equally many steps from the same untrained head, upon the same
     frozen features, and are judged on the same `still` renders of other homes. One more training
-    lacks nothing but has other homes in another order: as far as chance alone goes.
+    lacks nothing but has other homes in another order and another untrained head: as far as chance
+    alone goes.
 
     Args:
-        work: folder for panoramas, features and errors; what is there already is gone on with.
+        work: folder for panoramas, features and errors, of nothing else; what is there already is
+            gone on with.
         progress: called with panoramas rendered and steps trained, and with all of them.
 
     Returns:
@@ -51,7 +53,7 @@ def measure(work: Path, progress: Progress) -> dict[str, Any]:
 
     Raises:
         MissingExtraError: what trains or renders is not installed.
-        InputError: the folder cannot be written.
+        InputError: the folder cannot be written, or holds panoramas of another training.
     """
     try:
         import torch  # noqa: F401
@@ -65,6 +67,8 @@ def measure(work: Path, progress: Progress) -> dict[str, Any]:
 
     runs = _runs()
     total = JUDGED + len(runs) * (LEARNT + STEPS)
+    shards = {HELD_OUT_SEED: JUDGED, **dict.fromkeys(range(len(runs)), LEARNT)}
+    _refuse_others(work, shards)
     featuriser = Featuriser(pretrained())
     judged = samples(HELD_OUT_SEED, _PER_JUDGED_HOME, STILL)
     write_shard(work, HELD_OUT_SEED, judged, JUDGED, partial(_told, progress, 0, total))
@@ -84,6 +88,16 @@ def measure(work: Path, progress: Progress) -> dict[str, Any]:
         "panoramas_judged": JUDGED,
         "runs": figures([run.name for run in runs], errors, truth),
     }
+
+
+def _refuse_others(work: Path, shards: Mapping[int, int]) -> None:
+    """A folder of `model train` has shards of the same numbers, which nothing was left out of."""
+    for number, count in shards.items():
+        there = work / f"targets-{number:07d}.npy"
+        if there.exists():
+            found = len(np.load(there, mmap_mode="r", allow_pickle=False))
+            if found != count:
+                raise InputError(there, f"{found} panoramas", f"{count}: a folder of its own")
 
 
 def _runs() -> list[_Run]:
@@ -148,7 +162,7 @@ def _errors(work: Path, number: int, run: _Run) -> FloatArray:
     # An interrupted training begins again: its learning rate would not fall as that of the others.
     (out / CHECKPOINT).unlink(missing_ok=True)
     plan = Plan(
-        _HOURS,
+        _MOST_MINUTES,
         steps=STEPS,
         rate=_RATE,
         batch=_BATCH,
