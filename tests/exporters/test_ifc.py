@@ -145,7 +145,8 @@ def test_what_is_missing_is_told(monkeypatch):
 
 
 def test_north_and_the_place_are_the_models():
-    made = plan_ifc(flat(), "Flat", north=np.deg2rad(30), anchor=Anchor(-48.1, 11.5125, 0.5))
+    north = np.deg2rad(30)
+    made = plan_ifc(flat(), "Flat", anchor=Anchor(-48.1, 11.5125, north))
     file = parsed(made)
     (model,) = file.by_type("IfcGeometricRepresentationContext", include_subtypes=False)
     # 30° from the second axis towards the first.
@@ -154,5 +155,8 @@ def test_north_and_the_place_are_the_models():
     assert site.RefLatitude == (-48, -6, 0, 0)
     assert site.RefLongitude == (11, 30, 45, 0)
     assert complaints(file) == []
+    known = parsed(plan_ifc(flat(), "Flat", north=north))
+    (told,) = known.by_type("IfcGeometricRepresentationContext", include_subtypes=False)
+    assert told.TrueNorth.DirectionRatios == model.TrueNorth.DirectionRatios
     (plain,) = opened(flat()).by_type("IfcGeometricRepresentationContext", include_subtypes=False)
     assert plain.TrueNorth is None

@@ -39,7 +39,7 @@ def plan_ifc(
         plan: metric.
         title: of project and building.
         north: rad, from the plan's second axis towards its first, the model's true north; None
-            where not known.
+            for the anchor's.
         anchor: where the plan's origin lies on the globe, the site's place; None where not known.
 
     Raises:
@@ -73,6 +73,8 @@ class _Writer:
         volume = self._run("unit.add_si_unit", self._file, unit_type="VOLUMEUNIT")
         project.UnitsInContext = self._file.createIfcUnitAssignment([metres, area, volume])
         model = self._run("context.add_context", self._file, context_type="Model")
+        if north is None and anchor is not None:
+            north = anchor.north
         if north is not None:
             ahead = (math.sin(north), math.cos(north))
             model.TrueNorth = self._file.createIfcDirection(ahead)
