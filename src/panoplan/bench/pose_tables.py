@@ -100,6 +100,6 @@ def _together(tours: Sequence[dict[str, Any]]) -> list[str]:
         f"{joined} ({100 * joined / photos:.0f} %)",
         f"{wrong} ({100 * wrong / max(joined, 1):.1f} %)",
         "–", "–", "–",
-        f"{sum(hits for hits, _ in found)} of {sum(true for _, true in found)}",
+        f"{sum(hits for hits, _ in found)} of {sum(true for _, true in found)}" if found else "–",
         number(seconds, 0, " s"),
     ]  # fmt: skip
