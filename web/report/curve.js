@@ -1,4 +1,4 @@
-// The entropy of all boundary points over the scale.
+// What the search for the scale minimised.
 import { element, svg } from "./element.js";
 
 export function curve(scale) {
@@ -11,7 +11,7 @@ export function curve(scale) {
   const y = (v) => 10 + (1 - (v - y0) / (y1 - y0 || 1)) * (height - foot - 10);
   const points = scale.curve.map(([s, v]) => `${x(s).toFixed(1)},${y(v).toFixed(1)}`).join(" ");
   const axis = `M${left} 10V${height - foot}H${width - 10}`;
-  const words = `Entropy over the scale from ${x0.toPrecision(3)} to ${x1.toPrecision(3)}`;
+  const words = `Objective of the search, by scale, from ${x0.toPrecision(3)} to ${x1.toPrecision(3)}`;
   const text = (at, anchor, content) => svg("text", { ...at, "text-anchor": anchor }, content);
   const children = [
     svg("path", { d: axis, class: "axis" }),
