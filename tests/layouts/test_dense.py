@@ -74,6 +74,9 @@ def test_a_passage_is_closed_by_the_line_between_its_jambs(turn):
     np.testing.assert_array_equal(closed(seen, np.empty((0, 2))), seen)
     told = layout(Dense(seen, chances={"openings": inside * 1.0}))
     np.testing.assert_allclose(told.floor_boundary, true, atol=2e-3)
+    wavering = layout(Dense(seen, chances={"openings": inside * 0.4, "doors": inside * 0.3}))
+    np.testing.assert_allclose(wavering.floor_boundary, true, atol=2e-3)
+    assert len(wavering.spans.openings) == len(wavering.spans.doors) == 0
 
 
 def test_a_passage_without_an_edge_on_both_sides_stays_as_it_is():

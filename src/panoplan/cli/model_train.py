@@ -39,7 +39,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="train: of an earlier run with --head-share 1, averaged with this one",
     )
     parser.add_argument("--seed", type=int, default=0, help="train: of the order (0)")
-    parser.add_argument("--quiet", action="store_true", help="train: no progress")
+    parser.add_argument("--quiet", action="store_true", help="train, adapt: no progress")
 
 
 def act(options: argparse.Namespace) -> int:

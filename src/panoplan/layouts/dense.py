@@ -111,8 +111,10 @@ def layout(dense: Dense) -> Layout:
     spans, floor = None, dense.floor
     if any(name in dense.chances for name in _SPANS):
         none = np.zeros(len(dense.floor))
-        spans = Spans(**{name: likely_spans(dense.chances.get(name, none)) for name in _SPANS})
-        floor = closed(floor, np.concatenate([spans.doors, spans.openings]))
+        chances = {name: dense.chances.get(name, none) for name in _SPANS}
+        spans = Spans(**{name: likely_spans(chance) for name, chance in chances.items()})
+        # Where a network wavers between door and opening there is a passage all the same.
+        floor = closed(floor, likely_spans(chances["doors"] + chances["openings"]))
     return Layout(
         floor,
         dense.ceiling,

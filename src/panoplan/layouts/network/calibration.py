@@ -28,11 +28,11 @@ class Widening(nn.Module):
 
     def __init__(self, log_factors: FloatArray) -> None:
         super().__init__()
-        knots = torch.from_numpy(_knots()).float()
+        places = torch.from_numpy(knots()).float()
         values = torch.as_tensor(np.asarray(log_factors), dtype=torch.float32)
-        slopes = values.diff() / knots.diff()
+        slopes = values.diff() / places.diff()
         bends = torch.cat([slopes[:1], slopes.diff()])
-        for name, value in (("knots", knots), ("first", values[:1]), ("bends", bends)):
+        for name, value in (("knots", places), ("first", values[:1]), ("bends", bends)):
             self.register_buffer(name, value)
 
     def forward(self, log_scale: Tensor, elevation: Tensor) -> Tensor:
@@ -68,7 +68,7 @@ def widening(
         places.append(answer[:, 0].flatten().numpy())
         ratios.append((error * torch.exp(-answer[:, BOUNDARIES])).flatten().numpy())
     place, ratio = np.concatenate(places), np.concatenate(ratios)
-    nearest = np.abs(place[:, None] - _knots()).argmin(axis=1)
+    nearest = np.abs(place[:, None] - knots()).argmin(axis=1)
     factors = [1.0]
     for k in range(len(KNOTS_CH)):
         own = ratio[nearest == k]
@@ -79,6 +79,6 @@ def widening(
     return np.log(factors[1:])
 
 
-def _knots() -> FloatArray:
+def knots() -> FloatArray:
     """(K,) elevations of the knots, rad, ascending."""
     return np.asarray(-np.arctan(1 / np.array(KNOTS_CH)))

@@ -35,8 +35,8 @@ class _Calibrated(nn.Module):
         return torch.cat([answer[:, :BOUNDARIES], wide, answer[:, BOUNDARIES + 1 :]], dim=1), sure
 
 
-def spec() -> ModelSpec:
-    """What the network takes and gives."""
+def spec(name: str = NAME) -> ModelSpec:
+    """What the network of that name takes and gives."""
 
     def output(row: str, meaning: str) -> Output:
         return Output(_TENSOR, meaning, OUTPUTS.index(row))
@@ -57,7 +57,7 @@ def spec() -> ModelSpec:
         },
         mean=(MEAN,) * 3,
         std=(STD,) * 3,
-        name=NAME,
+        name=name,
         licence="Apache-2.0",
         extra={
             "through": {
@@ -69,13 +69,14 @@ def spec() -> ModelSpec:
     )
 
 
-def export(network: LayoutNetwork, path: Path, log_factors: FloatArray) -> None:
+def export(network: LayoutNetwork, path: Path, log_factors: FloatArray, name: str = NAME) -> None:
     """Writes the network as ONNX, its weights as 16-bit floats.
 
     Args:
         network: trained.
         path: of the file.
         log_factors: what the floor's logarithmic scale lacks, as `calibration.widening` gives it.
+        name: that the file tells.
 
     Raises:
         MissingExtraError: the package onnx is not installed.
@@ -88,7 +89,7 @@ def export(network: LayoutNetwork, path: Path, log_factors: FloatArray) -> None:
     module = _Calibrated(network, log_factors)
     model = onnx.load_from_string(onnx_bytes(module, (1, 3, WIDTH // 2, WIDTH), [_TENSOR, _SURE]))
     _halve(model, onnx)
-    onnx.helper.set_model_props(model, {METADATA_KEY: spec_json(spec())})
+    onnx.helper.set_model_props(model, {METADATA_KEY: spec_json(spec(name))})
     onnx.checker.check_model(model)
     write_bytes(path, model.SerializeToString())
 
