@@ -108,8 +108,8 @@ def test_rooms_of_a_few_photos_are_not_laid_on_one_another(seed, photos):
 def test_a_scale_that_few_photos_do_not_tell_is_uncertain(seed):
     views, true = _photos(seed)
     estimate = recover_scale(views, CONFIG)
-    assert abs(estimate.ch_per_su / true - 1) > 0.15
-    assert scale_sigma(views, estimate, CONFIG) > 0.1
+    off = abs(estimate.ch_per_su / true - 1)
+    assert scale_sigma(views, estimate, CONFIG) > max(0.1, off / 3)
 
 
 def test_of_a_walk_only_the_entropy_tells_the_scale():

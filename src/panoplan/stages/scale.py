@@ -87,9 +87,7 @@ def recover_scale(views: Sequence[CastLayout], config: ScaleConfig) -> ScaleEsti
         return _Objective(lambda k: _mean_entropy(points, windows, k / unit, config))
 
     sharpness = entropy(windows)
-    objective = _Objective(
-        lambda k: sharpness(k) + config.intrusion * _mean_intrusion(points, windows, k / unit)
-    )
+    objective = _Objective(lambda k: sharpness(k) + _intrusion(points, windows, k / unit, config))
     low, high = _range(points, config)
     levels = _coarse_to_fine(objective if config.intrusion else sharpness, low, high, config)
     best, step = levels[-1], config.steps[-1]
@@ -143,7 +141,7 @@ def scale_sigma(
         points, windows = _points(rest, config), _windows(len(rest), config)
         scales = estimate.ch_per_su * ratios
         sharpness = _mean_entropy(points, windows, scales, config)
-        objective = sharpness + config.intrusion * _mean_intrusion(points, windows, scales)
+        objective = sharpness + _intrusion(points, windows, scales, config)
         best = int(np.argmin(objective))
         found.append(ratios[best] if best >= len(near) else _vertex(near, sharpness[: len(near)]))
     off = np.array(found) - 1.0
@@ -248,11 +246,13 @@ def _mean_entropy(
     return total / (len(windows) * len(config.cells_ch))
 
 
-def _mean_intrusion(
-    points: _Points, windows: list[tuple[int, int]], scales: FloatArray
+def _intrusion(
+    points: _Points, windows: list[tuple[int, int]], scales: FloatArray, config: ScaleConfig
 ) -> FloatArray:
-    """Share of the points that another view of their window sees through."""
+    """Share of the points that another view of their window sees through, by its weight."""
     total = np.zeros(len(scales))
+    if config.intrusion == 0.0:
+        return total
     for start, stop in windows:
         total += intruding_shares(
             points.probes[start:stop],
@@ -263,7 +263,7 @@ def _mean_intrusion(
             _INSIDE_CH,
             _INSIDE_SHARE,
         )
-    return total / len(windows)
+    return config.intrusion * total / len(windows)
 
 
 def _range(points: _Points, config: ScaleConfig) -> tuple[float, float]:
