@@ -17,7 +17,7 @@ FloatArray = NDArray[np.float64]
 
 _ON, _BEFORE, _BEYOND, _ANY = 0.45, 0.2, 0.3, 0.05
 """Shares of points on the first surface, before and beyond it, and anywhere."""
-_ON_OPEN, _BEFORE_OPEN, _BEYOND_OPEN = 0.25, 0.1, 0.6
+_ON_OPEN, _BEFORE_OPEN, _BEYOND_OPEN = 0.12, 0.08, 0.75
 """The same where the layout tells a door, which may be shut, or an opening in the wall."""
 _BEFORE_SCALE, _BEYOND_WIDTH, _ANY_WIDTH = 0.4, 3.0, 6.0
 """How far they are off then, as logarithms of the range."""
