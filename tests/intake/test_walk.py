@@ -139,6 +139,13 @@ def test_what_holds_no_panorama_is_one_line_and_exit_2(name, make, told, photos,
     assert not (tmp_path / "out").exists()
 
 
+def test_pictures_without_a_trajectory_have_no_unit_to_be_given(photos, tmp_path, capsys):
+    words = ["--layouts", str(photos / "layouts_pred"), "--trajectory-unit", "m"]
+    assert main(["run", str(photos / "images"), "-o", str(tmp_path / "out"), *words]) == 2
+    assert "--trajectory-unit m: found no trajectory" in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
 def test_photos_of_two_homes_are_two_groups_and_told(photos, tmp_path, capsys):
     folder = tmp_path / "two"
     (folder / "images").mkdir(parents=True)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from panoplan.cli import settings
 from panoplan.cli.layout import add_network_arguments
 from panoplan.cli.progress import progress
+from panoplan.errors import InputError
 
 if TYPE_CHECKING:
     from panoplan.datasets.scene import Scene
@@ -65,7 +66,7 @@ def act(options: argparse.Namespace) -> int:
     from panoplan.cache import Cache, cache_folder
     from panoplan.estimator.state import Walk
     from panoplan.formats.run_folder import RunFolder
-    from panoplan.intake.given import Given
+    from panoplan.intake.given import Given, recognise
     from panoplan.intake.live import LivePlan
     from panoplan.intake.open import open_input
     from panoplan.pipeline import RunOptions, run, summary
@@ -80,6 +81,12 @@ def act(options: argparse.Namespace) -> int:
         options.average,
         options.camera_height,
     )
+    if options.trajectory_unit == "m" and recognise(given) in ("video", "images"):
+        raise InputError(
+            "--trajectory-unit m",
+            "no trajectory: poses are to be found from the pictures, in no unit",
+            "--camera-height, or --trajectory",
+        )
     folder = RunFolder(options.output, force=options.force)
     known = RunOptions(options.trajectory_unit, options.camera_height, options.explain)
     with progress("keyframes", quiet=options.quiet) as report:
