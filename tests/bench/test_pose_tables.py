@@ -33,6 +33,9 @@ def test_tours_are_summed_over_photos():
     assert "| one | 8 | 6 | 1 | 12.3 cm | 12.3 cm | – | 5 of 6 | 10 s |" in text
     assert "| one, draw 0 | 3 | 1 | 0 | – | – | – | – | 10 s |" in text
     assert "| all | 20 | 15 (75 %) | 1 (6.7 %) | – | – | – | 8 of 12 |" in text
+    apart = [*figures, _tour("three", 2, _group(1, []))]
+    text = tours([{"benchmark": "tour", "figures": apart, **MACHINE}])
+    assert "| 8 of 12, 1 without a plan |" in text
 
 
 def test_walks_tell_errors_at_the_end_and_as_given():

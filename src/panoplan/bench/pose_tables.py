@@ -94,12 +94,14 @@ def _together(tours: Sequence[dict[str, Any]]) -> list[str]:
     joined = sum(group["photos"] for group in largest)
     wrong = sum(len(group["misplaced"]) for group in largest)
     found = [_rooms(f["plan"]) for f in tours if f.get("plan") is not None]
+    planless = len(tours) - len(found)
+    rooms = f"{sum(hits for hits, _ in found)} of {sum(true for _, true in found)}"
     seconds = sum(f["cpu_seconds"] for f in tours)
     return [
         str(photos),
         f"{joined} ({100 * joined / photos:.0f} %)",
         f"{wrong} ({100 * wrong / max(joined, 1):.1f} %)",
         "–", "–", "–",
-        f"{sum(hits for hits, _ in found)} of {sum(true for _, true in found)}" if found else "–",
+        (f"{rooms}, {planless} without a plan" if planless else rooms) if found else "–",
         number(seconds, 0, " s"),
     ]  # fmt: skip
