@@ -40,6 +40,7 @@ from panoplan.poses.walk.follow import (
 from panoplan.poses.walk.keyframes import EVERY_IMAGE, KeyframeChooser
 from panoplan.poses.walk.odometry import Odometry
 from panoplan.simulate.render.filmed import TROUBLES, film_badly, film_walk, filmed_home
+from panoplan.simulate.scene import SimulatedScene
 from panoplan.types.plan import FloorPlan
 from panoplan.types.pose import Pose, Trajectory
 
@@ -55,7 +56,7 @@ def rendered(folder: Path, progress: Progress) -> list[Path]:
 
     Args:
         folder: gets a sequence folder a walk: three buildings with two looks each, and the first
-            of them with each of the troubles that pictures can have.
+            of them with a bare white corridor and with each of the troubles that pictures can have.
         progress: is told how far the work has come.
 
     Returns:
@@ -66,14 +67,19 @@ def rendered(folder: Path, progress: Progress) -> list[Path]:
         MissingExtraError: the `render` extra is not installed.
     """
     folders = []
-    for seed in RENDERED_SEEDS:
-        walk = filmed_home(seed)
+
+    def filmed(walk: SimulatedScene, look: int, name: str, *, bare_corridor: bool = False) -> None:
+        folders.append(folder / name)
+        if not (folders[-1] / DESCRIPTION).exists():
+            told = partial(_rendering, progress, name)
+            film_walk(folders[-1], walk, look, told, bare_corridor=bare_corridor)
+
+    walks = {seed: filmed_home(seed) for seed in RENDERED_SEEDS}
+    for seed, walk in walks.items():
         for look in range(_LOOKS):
-            place = folder / f"walk_{seed}_look_{look}"
-            folders.append(place)
-            if not (place / DESCRIPTION).exists():
-                told = partial(_rendering, progress, place.name)
-                film_walk(place, walk, len(RENDERED_SEEDS) * look + seed, told)
+            filmed(walk, len(RENDERED_SEEDS) * look + seed, f"walk_{seed}_look_{look}")
+    first = RENDERED_SEEDS[0]
+    filmed(walks[first], first, f"{folders[0].name}_bare_corridor", bare_corridor=True)
     for trouble in TROUBLES:
         place = folder / f"{folders[0].name}_{trouble}"
         if not place.exists():

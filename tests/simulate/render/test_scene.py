@@ -207,3 +207,18 @@ def test_an_opening_as_high_as_its_rooms_has_their_ceiling_and_floor():
             np.testing.assert_allclose(colour[above], look.ceiling.colour, rtol=1e-5)
             flush += 1
     assert flush > 0
+
+
+def test_a_bare_room_is_empty_and_white_and_the_others_are_as_usual(flat):
+    usual, bare = (Scene(flat, 5, PREVIEW, furnished=1.0, bare=b) for b in (frozenset(), {0}))
+    inside = [shapely.Polygon(flat.rooms[k].polygon) for k in (0, 1)]
+    stands = [
+        [sum(s.intersects(room) for s in scene.furniture.solid) for room in inside]
+        for scene in (usual, bare)
+    ]
+    assert stands[0][0] > 0 == stands[1][0]
+    assert stands[1][1] > 0
+    _, camera = _standing(bare, 0)
+    floors = [scene.panorama(camera, np.eye(3), WIDTH).radiance[-3:] for scene in (usual, bare)]
+    tints = [floor.mean(axis=(0, 1)) / floor.mean() for floor in floors]
+    assert np.ptp(tints[1]) < 0.15 < np.ptp(tints[0])

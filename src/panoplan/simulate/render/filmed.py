@@ -17,7 +17,7 @@ from panoplan.formats.image import list_images, read_panorama
 from panoplan.formats.sequence import write_sequence
 from panoplan.simulate.flats import make_flat
 from panoplan.simulate.render.develop import jpeg
-from panoplan.simulate.render.record import IMAGES, record
+from panoplan.simulate.render.record import IMAGES, Session, record
 from panoplan.simulate.render.scene import QUALITIES
 from panoplan.simulate.scene import SimulatedScene, simulate
 from panoplan.types.pose import Trajectory
@@ -61,7 +61,12 @@ def _first(walk: SimulatedScene, count: int) -> SimulatedScene:
 
 
 def film_walk(
-    folder: Path, walk: SimulatedScene, look: int, told: Callable[[int, int], None]
+    folder: Path,
+    walk: SimulatedScene,
+    look: int,
+    told: Callable[[int, int], None],
+    *,
+    bare_corridor: bool = False,
 ) -> None:
     """Renders a walk and writes it with its truth.
 
@@ -70,12 +75,16 @@ def film_walk(
         walk: what is filmed.
         look: seed of the home's looks and of the camera.
         told: called with the number of frames done and of all.
+        bare_corridor: whether its corridor is empty and of an even white.
 
     Raises:
         InputError: a place that cannot be written.
         MissingExtraError: the `render` extra is not installed.
     """
-    images = record(folder, walk, look, QUALITIES["preview"], told=told)
+    rooms = walk.building.rooms if bare_corridor else ()
+    bare = frozenset(k for k, room in enumerate(rooms) if room.label == "corridor")
+    session = Session(bare=bare)
+    images = record(folder, walk, look, QUALITIES["preview"], session=session, told=told)
     write_sequence(folder, walk.name, walk.keyframes, walk.truth, walk.camera_height_m, images)
 
 

@@ -159,6 +159,7 @@ def furnish(
     clear: FloatArray,
     mesh: MeshBuilder,
     rng: np.random.Generator,
+    bare: frozenset[int] = frozenset(),
 ) -> Furniture:
     """Adds lamps, beams, fitted and loose furniture.
 
@@ -171,6 +172,7 @@ def furnish(
         clear: (N, 2) plan: places that people walk; nothing stands there.
         mesh: what they are added to.
         rng: of all choices.
+        bare: indices of the rooms that have nothing but a lamp.
 
     Returns:
         What stands where.
@@ -181,6 +183,9 @@ def furnish(
     lamps: list[Lamp] = []
     for k, room in enumerate(building.rooms):
         spot = _Room(building, k, leaves, clear, look, mesh, rng)
+        if k in bare:
+            lamps += spot.light()
+            continue
         for piece, odds in _FITTED.get(uses[k], ()):
             if rng.random() < odds:
                 base = spot.put(piece)

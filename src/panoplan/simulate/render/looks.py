@@ -42,6 +42,10 @@ def linear(red: float, green: float, blue: float) -> Colour:
     return r, g, b
 
 
+BARE = Material(Pattern.PLAIN, linear(0.9, 0.9, 0.88), contrast=0.0)
+"""Even white paint."""
+
+
 def tinted(rng: np.random.Generator, base: Colour, spread: float, shade: float = 0.0) -> Colour:
     """A colour near another: each channel off by `spread`, all together by `shade`."""
     off = rng.normal(0, spread, 3) + rng.normal(0, shade)

@@ -34,11 +34,13 @@ class Session:
         furnished: 0 for no loose furniture, 1 for a full home; drawn where None.
         doors_open: whether every door is open, not only those that the camera comes by.
         sharp: whether the camera is a sharp one on a tripod; drawn as any where not.
+        bare: indices of the rooms that are empty and of an even white.
     """
 
     furnished: float | None = None
     doors_open: bool = False
     sharp: bool = False
+    bare: frozenset[int] = frozenset()
 
 
 USUAL = Session()
@@ -129,6 +131,7 @@ def _photograph(
         quality,
         furnished=session.furnished,
         clear=kept_clear(simulated, session),
+        bare=session.bare,
     )
     labeller = Labeller(scene)
     # The file itself is the only compression.

@@ -63,6 +63,7 @@ class Scene:
         furnished: 0 for a home without loose furniture, 1 for a full one; drawn where None.
         clear: (N, 2) plan: where nothing may stand and doors are open, as people walk there.
         sunny: whether the sun may shine in.
+        bare: indices of the rooms that are empty and of an even white.
 
     Raises:
         MissingExtraError: the `render` extra is not installed.
@@ -77,6 +78,7 @@ class Scene:
         furnished: float | None = None,
         clear: FloatArray | None = None,
         sunny: bool = True,
+        bare: frozenset[int] = frozenset(),
     ) -> None:
         root = np.random.SeedSequence(seed) if isinstance(seed, int) else seed
         look_rng, shell_rng, things_rng, light_rng = map(np.random.default_rng, root.spawn(4))
@@ -87,9 +89,9 @@ class Scene:
         uses = draw_uses(building, things_rng)
         wet = frozenset(k for k, use in enumerate(uses) if use in ("kitchen", "bath"))
         mesh = MeshBuilder()
-        self.shell: Shell = raise_shell(building, look, wet, mesh, shell_rng, clear)
+        self.shell: Shell = raise_shell(building, look, wet, mesh, shell_rng, clear, bare)
         self.furniture: Furniture = furnish(
-            building, uses, self.shell.leaves, look, density, free, mesh, things_rng
+            building, uses, self.shell.leaves, look, density, free, mesh, things_rng, bare
         )
         self.mesh: Mesh = mesh.build()
         self.caster = ray_caster(self.mesh.triangles)

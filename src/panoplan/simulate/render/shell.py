@@ -8,7 +8,7 @@ import numpy as np
 import shapely
 
 from panoplan.simulate.buildings import Building, Passage
-from panoplan.simulate.render.looks import Look, tiled
+from panoplan.simulate.render.looks import BARE, Look, tiled
 from panoplan.simulate.render.materials import Material, Pattern
 from panoplan.simulate.render.mesh import UP, MeshBuilder, Rectangle
 from panoplan.types.arrays import FloatArray
@@ -66,6 +66,7 @@ def raise_shell(
     mesh: MeshBuilder,
     rng: np.random.Generator,
     walked: FloatArray | None = None,
+    bare: frozenset[int] = frozenset(),
 ) -> Shell:
     """Adds a building's own surfaces.
 
@@ -76,6 +77,7 @@ def raise_shell(
         mesh: what they are added to.
         rng: of heights, frames, leaves and which paint goes where.
         walked: (N, 2) plan: where a camera is; doors there are open, and out of its way.
+        bare: indices of the rooms whose floor, walls and ceiling are all of an even white.
 
     Returns:
         What the rest needs to know.
@@ -87,18 +89,21 @@ def raise_shell(
     floors = []
     for k, room in enumerate(building.rooms):
         floors.append(look.wet_floor if k in wet else dry[int(rng.integers(len(dry)))])
-        mesh.level(room.polygon, 0.0, floors[k], facing_up=True)
-        mesh.level(room.polygon, room.ceiling_height_m, look.ceiling, facing_up=False)
         if k in wet and rng.random() < 0.5:
             paints[k] = tiled(paints[k], rng, float(rng.choice([1.2, room.ceiling_height_m])))
+        ceiling = look.ceiling
+        if k in bare:
+            floors[k] = paints[k] = ceiling = BARE
+        mesh.level(room.polygon, 0.0, floors[k], facing_up=True)
+        mesh.level(room.polygon, room.ceiling_height_m, ceiling, facing_up=False)
         _walls(building, k, heights, windows, paints[k], mesh)
     shut, leaves = set(), []
     frame = (float(rng.uniform(0.05, 0.1)), float(rng.uniform(0.008, 0.025)))
     for k, passage in enumerate(building.passages):
         framed = passage.kind == "door" or rng.random() < 0.3
         lining = look.trim if framed else paints[passage.rooms[0]]
-        ceiling = min(building.rooms[j].ceiling_height_m for j in passage.rooms)
-        overhead = look.ceiling if heights[k] == ceiling else replace(lining, detail=0.0)
+        lowest = min(building.rooms[j].ceiling_height_m for j in passage.rooms)
+        overhead = look.ceiling if heights[k] == lowest else replace(lining, detail=0.0)
         underfoot = floors[passage.rooms[0]] if passage.kind == "opening" else dry[0]
         _tunnel(passage, heights[k], lining, overhead, underfoot, mesh)
         if framed:
