@@ -42,7 +42,7 @@ def _open_plan(seed: int, rng: np.random.Generator) -> Building:
         openings=float(rng.uniform(0.6, 1.0)),
         rounds=float(rng.uniform(0.3, 0.9)),
         door_m=(0.62, 0.95),
-        double_share=0.08,
+        double_share=float(rng.uniform(0.0, 0.4)),
         widest_opening_m=float(rng.uniform(3.0, 8.0)),
         whole_walls=float(rng.uniform(0.0, 0.9)),
     )
