@@ -72,8 +72,8 @@ def samples(
             sunny="light" not in without,
         )
         labeller = Labeller(scene)
-        rng = np.random.default_rng(camera_seed)
-        for _ in range(per_building):
+        # What is left out of one panorama must not change what is drawn for the next one.
+        for rng in np.random.default_rng(camera_seed).spawn(per_building):
             yield _sample(scene, labeller, rng, without)
 
 
@@ -99,7 +99,8 @@ def _sample(
     position, room = draw_stand(scene, rng, small="closets" not in without)
     heading = float(rng.uniform(-np.pi, np.pi))
     height = float(np.clip(rng.normal(_HEIGHT_M, _HEIGHT_SPREAD_M), *_HEIGHT_RANGE_M))
-    tilt = _tilt(rng) if "tilt" not in without else np.eye(3)
+    drawn = _tilt(rng)
+    tilt = np.eye(3) if "tilt" in without else drawn
     turn = _turned(heading)
     pixels = scene.panorama(np.array([position[0], -height, position[1]]), turn @ tilt, WIDTH)
     labels = labeller.labels(position, heading, height, width=WIDTH, level_from_cam=tilt, room=room)

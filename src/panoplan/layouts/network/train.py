@@ -42,7 +42,7 @@ class Plan:
         trunk_rate: of the trunk's 1×1 convolutions above stride 8; 0 leaves the trunk as it is.
         batch: panoramas a step.
         average: decay of the running mean of the weights, which is what is kept.
-        seed: of the order of the panoramas.
+        seed: of a fresh head and of the order of the panoramas.
         warm_up: steps over which the learning rate rises.
         shards: numbers of those that are drawn; None for all that there are.
     """
