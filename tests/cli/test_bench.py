@@ -10,6 +10,11 @@ from panoplan.cli.main import main
     [
         (["runtime", "-o", "nowhere/runtime.json"], "nowhere/runtime.json: found no folder for it"),
         (["home", "-o", "home.json"], "expected bench home PATH"),
+        (
+            ["exports", "home", "--predict"],
+            "--predict: found bench exports; expected bench home or",
+        ),
+        (["tour", "tours", "--live"], "--live: found bench tour; expected bench odometry"),
         (["odometry", "nowhere"], "nowhere: found no folder"),
         (["odometry", "."], "found no trajectory_gt.tum"),
     ],

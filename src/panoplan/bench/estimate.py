@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from panoplan.config import Config
@@ -10,8 +10,13 @@ from panoplan.datasets.detect import open_scene
 from panoplan.datasets.scene import Scene
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
-from panoplan.formats.sequence import TRUE_TRAJECTORY
+from panoplan.formats.image import read_panorama
+from panoplan.formats.sequence import TRUE_TRAJECTORY, read_sequence
+from panoplan.intake.layouts import layout_of
+from panoplan.layouts.onnx import OnnxLayouts
+from panoplan.pipeline import Progress
 from panoplan.types.keyframe import Keyframe
+from panoplan.types.layout import Layout
 from panoplan.types.plan import FloorPlan
 
 
@@ -31,6 +36,25 @@ def true_poses(folder: Path) -> Scene:
         InputError: the folder is not complete.
     """
     return open_scene(folder, trajectory=folder / TRUE_TRAJECTORY)
+
+
+def images_of(folder: Path) -> dict[str, Path]:
+    """The images of a sequence folder by their keyframes' ids."""
+    keyframes = read_sequence(folder).keyframes
+    return {k.id: folder / k.image for k in keyframes if k.image}
+
+
+def predicted(
+    images: Mapping[str, Path], network: OnnxLayouts, progress: Progress
+) -> dict[str, Layout]:
+    """A network's layouts of images, without those whose answer cannot be believed."""
+    found = {}
+    for done, (name, path) in enumerate(images.items()):
+        progress(done, len(images), "layouts")
+        layout = layout_of(network, read_panorama(path))
+        if layout is not None:
+            found[name] = layout
+    return found
 
 
 def metric_plan(scene: Scene, config: Config) -> FloorPlan:

@@ -7,12 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from panoplan.bench.estimate import estimate, true_poses
+from panoplan.bench.estimate import estimate, images_of, predicted, true_poses
 from panoplan.config import Config
 from panoplan.datasets.detect import read_truth
 from panoplan.estimator.state import Walk
+from panoplan.layouts.onnx import OnnxLayouts
 from panoplan.metrics.presentation import as_dict
 from panoplan.metrics.report import evaluate
+from panoplan.pipeline import Progress
 from panoplan.types.keyframe import Keyframe
 from panoplan.types.pose import Pose
 
@@ -20,12 +22,16 @@ _UNIT_M = 3.7
 """Metres a trajectory unit where the unit is to be unknown: any number will do."""
 
 
-def measure(folder: Path, config: Config) -> dict[str, Any]:
+def measure(
+    folder: Path, config: Config, network: OnnxLayouts | None, progress: Progress
+) -> dict[str, Any]:
     """Runs the method on a sequence folder with its true poses.
 
     Args:
         folder: with trajectory_gt.tum, predicted layouts, and the true plan.
         config: settings.
+        network: is asked for the layouts; None for those in the folder.
+        progress: is told how far that has come.
 
     Returns:
         Figures over the rooms split at openings, unaligned, with the trajectory known to be metric
@@ -36,10 +42,15 @@ def measure(folder: Path, config: Config) -> dict[str, Any]:
     """
     scene = true_poses(folder)
     truth = read_truth(folder)
-    result: dict[str, Any] = {"scene": folder.name}
+    told = scene.keyframes
+    if network is not None:
+        layouts = predicted(images_of(folder), network, progress)
+        told = tuple(replace(k, layout=layouts.get(k.id)) for k in told)
+    asked = "files" if network is None else "network"
+    result: dict[str, Any] = {"scene": folder.name, "layouts": asked}
     for name in ("metric", "recovered"):
         metric = name == "metric"
-        keyframes = scene.keyframes if metric else [_in_units(k) for k in scene.keyframes]
+        keyframes = told if metric else [_in_units(k) for k in told]
         walk = Walk("m" if metric else "unknown", scene.camera_height_m, len(keyframes))
         for _ in range(2):
             started = time.perf_counter()

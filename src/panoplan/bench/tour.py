@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from panoplan.bench.estimate import estimate
+from panoplan.bench.estimate import estimate, images_of, predicted
 from panoplan.config import Config, TourConfig
 from panoplan.datasets.folder import read_truth
 from panoplan.errors import InputError
@@ -20,7 +20,6 @@ from panoplan.estimator.state import Walk
 from panoplan.formats.image import read_panorama
 from panoplan.formats.sequence import DESCRIPTION, LAYOUTS, read_sequence
 from panoplan.geometry.rigid import heading_of
-from panoplan.intake.layouts import layout_of
 from panoplan.layouts.files import list_layouts, read_layout
 from panoplan.layouts.onnx import OnnxLayouts
 from panoplan.metrics.presentation import as_dict
@@ -127,8 +126,12 @@ def _tour(
     true, height = truth.trajectory, sequence.camera_height_m or truth.plan.camera_height_m
     if true is None or height is None:
         raise InputError(folder, "no true poses or no camera height", "a scene with known truth")
-    files = {k.id: folder / k.image for k in sequence.keyframes if k.image}
-    layouts = _layouts(folder, files, network, progress)
+    files = images_of(folder)
+    if network is None:
+        told = list_layouts(folder / LAYOUTS)
+        layouts = {name: read_layout(path) for name, path in told.items()}
+    else:
+        layouts = predicted(files, network, progress)
     known: dict[str, Features] = {}
 
     def features(name: str, image: NDArray[np.uint8], settings: TourConfig) -> Features:
@@ -157,20 +160,6 @@ def _tour(
     count = round(_DRAWN * len(names))
     drawn = [np.random.default_rng(seed).permutation(len(names))[:count] for seed in range(draws)]
     return {**whole, "draws": [joined([names[k] for k in np.sort(some)]) for some in drawn]}
-
-
-def _layouts(
-    folder: Path, files: Mapping[str, Path], network: OnnxLayouts | None, progress: Progress
-) -> dict[str, Layout]:
-    if network is None:
-        return {name: read_layout(path) for name, path in list_layouts(folder / LAYOUTS).items()}
-    found = {}
-    for done, (name, path) in enumerate(files.items()):
-        progress(done, len(files), "layouts")
-        layout = layout_of(network, read_panorama(path))
-        if layout is not None:
-            found[name] = layout
-    return found
 
 
 def _plan(

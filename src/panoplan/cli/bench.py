@@ -54,7 +54,7 @@ def add_parser(commands: Any) -> None:
         "--model",
         type=Path,
         metavar="ONNX",
-        help="layouts, tour, odometry: network (default: the shipped)",
+        help="layouts, home, tour, odometry: network (default: the shipped)",
     )
     parser.add_argument(
         "--flats", type=_count, default=20, metavar="N", help="seeds 0 to N-1 a grade"
@@ -78,7 +78,7 @@ def add_parser(commands: Any) -> None:
     parser.add_argument(
         "--predict",
         action="store_true",
-        help="tour: layouts by the network (--model) instead of those in the scenes",
+        help="home, tour: layouts by the network (--model) instead of those in the scene",
     )
     parser.add_argument(
         "--live",
@@ -106,6 +106,10 @@ def add_parser(commands: Any) -> None:
     parser.set_defaults(act=act)
 
 
+_ONLY = {"rendered": ("tour", "odometry"), "predict": ("home", "tour"), "live": ("odometry",)}
+"""Options that mean nothing to other benchmarks."""
+
+
 def act(options: argparse.Namespace) -> int:
     """Runs the command."""
     from panoplan.bench.record import commit, record, to_json
@@ -115,6 +119,10 @@ def act(options: argparse.Namespace) -> int:
         return bench_v1.act(options)
     if options.what is None:
         raise InputError("bench", "nothing to measure", "bench v1, bench accuracy … (see --help)")
+    for name, where in _ONLY.items():
+        if getattr(options, name) and options.what not in where:
+            expected = " or ".join(f"bench {what}" for what in where)
+            raise InputError(f"--{name}", f"bench {options.what}", expected)
     asked = (
         "home", "difficulty", "odometry", "tour", "layouts", "realism", "exports", "model", "table",
     )  # fmt: skip
@@ -162,12 +170,16 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
 
     place, jobs, trials = options.input, options.jobs, options.trials
     flats = range(options.flats)
+
+    def asked() -> OnnxLayouts | None:
+        return OnnxLayouts(options.model or SHIPPED, threads=1) if options.predict else None
+
     measures: dict[str, Callable[[], Any]] = {
         "accuracy": lambda: accuracy.measure(
             flats, config, report, metric=options.metric, jobs=jobs
         ),
         "metric": lambda: metric.measure(flats, config, report, jobs=jobs),
-        "home": lambda: home.measure(place, config),
+        "home": lambda: home.measure(place, config, asked(), report),
         "misplaced": lambda: (
             misplaced.measure_flats(range(trials), config, report)
             if place is None
@@ -187,7 +199,7 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
             else _scenes(place),
             config,
             options.draws,
-            OnnxLayouts(options.model or SHIPPED, threads=1) if options.predict else None,
+            asked(),
             report,
         ),
         "layouts": lambda: layouts.measure(
