@@ -125,6 +125,17 @@ def test_stills_are_few_and_inside_their_rooms():
             assert ring.exterior.distance(shapely.Point(position)) > 0.3
 
 
+def test_more_stills_stand_in_doorways():
+    flat = make_flat(3)
+    usual, more = (stills(flat, np.random.default_rng(3), doorways=k) for k in (0, 3))
+    places = more.trajectory.translations[:, [0, 2]]
+    assert len(places) == len(usual.trajectory) + 3
+    middles = np.array([p.area.mean(axis=0) for p in flat.passages])
+    nearest = np.hypot(*(places[-3:, None] - middles).transpose(2, 0, 1)).argmin(axis=1)
+    assert places[-3:] == pytest.approx(middles[nearest])
+    assert len(set(nearest)) == 3
+
+
 def test_a_camera_in_a_doorway_is_in_the_room_it_looks_into():
     rooms = [InteriorRoom("a", rectangle(3, 3)), InteriorRoom("b", rectangle(3, 3, (3.2, 0)))]
     building = building_from_rooms("two", rooms, 0)

@@ -126,6 +126,7 @@ def stills(
     *,
     per_room: tuple[int, int] = (1, 3),
     counts: Sequence[int] | None = None,
+    doorways: int = 0,
     start: int | None = None,
     camera_height_m: float | None = None,
 ) -> Walk:
@@ -136,6 +137,7 @@ def stills(
         rng: of all choices.
         per_room: fewest and most photos a room.
         counts: photos of each room instead.
+        doorways: how many more photos are taken, each in a doorway or opening drawn.
         start: index of the first room; drawn where None.
         camera_height_m: nominal height; drawn from 1.4-1.7 m where None.
 
@@ -154,6 +156,10 @@ def stills(
         count = drawn if counts is None else counts[room]
         spots = _waypoints(_Footing(building, room), rng, count)
         places += [np.append(spot, building.floor_m(room)) for spot in spots]
+    passages = building.passages
+    for k in rng.permutation(len(passages))[:doorways]:
+        middle = passages[k].area.mean(axis=0)
+        places.append(np.append(middle, building.floor_m(passages[k].rooms[0])))
     standing = np.array(places)
     beta = rng.uniform(-np.pi, np.pi, len(standing))
     bob = 0.005 * rng.standard_normal(len(standing))

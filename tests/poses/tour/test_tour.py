@@ -10,6 +10,7 @@ from panoplan.geometry.rigid import heading_of
 from panoplan.poses.tour.features import Features
 from panoplan.poses.tour.frames import relative
 from panoplan.poses.tour.heading import quarter_difference, wall_heading, yaw_prior
+from panoplan.poses.tour.matching import Matches, placed
 from panoplan.poses.tour.room import log_surface_ranges, room_seen
 from panoplan.poses.tour.tour import join_tour
 from panoplan.simulate.buildings import l_shape, single_room
@@ -177,3 +178,23 @@ def test_the_wall_has_a_passage_where_the_layout_tells_a_door():
     elevation = np.deg2rad([-20.0, 10.0, -20.0, -60.0])
     *_, passage = log_surface_ranges(room, heading, elevation)
     assert passage.tolist() == [True, True, False, False]
+
+
+def test_what_is_far_outside_tells_no_place():
+    layout = Home(0).view([1.0, 1.2, 0.0]).layout
+    # The middle of the image is a window, its edge a door.
+    spans = Spans(np.array([[1000, 23]]), np.empty((0, 2)), np.array([[480, 540]]))
+    room = room_seen(replace(layout, spans=spans), RegistrationConfig())
+    middle, edge, wall, same = 0.0, np.pi - 1e-3, 1.0, np.deg2rad(7.0)
+    angles = np.array(
+        [
+            [middle, same, middle, same + np.deg2rad(0.1)],
+            [middle, same, edge, same],
+            [middle, same, middle, same + np.deg2rad(2.0)],
+            [middle, same, wall, same],
+            [wall, same, wall, same],
+        ]
+    )
+    matches = Matches(angles, np.arange(1.0, 6.0))
+    assert placed(matches, room, room, TourConfig()).prior.tolist() == [3.0, 4.0, 5.0]
+    assert placed(matches, room, None, TourConfig()) is matches

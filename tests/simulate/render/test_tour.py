@@ -17,6 +17,11 @@ def test_every_room_has_a_photo_and_large_ones_more(seed):
     assert photos.min() >= 1
     areas = [room.area for room in rooms]
     assert photos[int(np.argmax(areas))] >= 2
+    in_doorways = sum(
+        shapely.intersects_xy(shapely.Polygon(passage.area), x, z).sum()
+        for passage in home.building.passages
+    )
+    assert in_doorways == round(0.25 * len(home.keyframes))
     assert all(keyframe.layout is not None for keyframe in home.keyframes)
 
 

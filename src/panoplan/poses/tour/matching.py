@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from panoplan.config import TourConfig
 from panoplan.geometry.nearest import mutual_nearest
 from panoplan.poses.tour.features import Features
+from panoplan.poses.tour.room import RoomSeen, looks_out
 from panoplan.types.arrays import FloatArray, IntArray
 
 
@@ -61,6 +62,30 @@ def match(a: Features, b: Features, config: TourConfig) -> Matches:
     angles = np.column_stack([a.headings[i], a.elevations[i], b.headings[j], b.elevations[j]])
     sizes = np.log(a.sizes[i] / b.sizes[j])
     return Matches(angles, _distinct(ratio[order]) * _sized(sizes, angles))
+
+
+def placed(matches: Matches, a: RoomSeen | None, b: RoomSeen | None, config: TourConfig) -> Matches:
+    """The matches without what lies so far away that it tells no place.
+
+    What is far outside has one elevation from everywhere, and a heading that tells the yaw alone:
+    two rooms with windows to one side would be taken for one. What is seen at one elevation through
+    a window or a door in both panoramas is left out; on walls that may be chance.
+
+    Args:
+        matches: of two panoramas.
+        a: the room that the first one stands in, None where unknown.
+        b: that of the second one.
+        config: settings.
+    """
+    if a is None or b is None:
+        return matches
+    angles = matches.angles
+    same = np.abs(angles[:, 1] - angles[:, 3]) < _FAR_SIGMAS * np.deg2rad(config.match_sigma_deg)
+    far = same & looks_out(a, angles[:, 0]) & looks_out(b, angles[:, 2])
+    return Matches(angles[~far], matches.prior[~far])
+
+
+_FAR_SIGMAS = 3.0
 
 
 def _distinct(ratio: FloatArray) -> FloatArray:

@@ -9,12 +9,13 @@ import numpy as np
 from panoplan.config import RegistrationConfig
 from panoplan.geometry.polar import PROFILE_BINS, range_profile
 from panoplan.stages.registration import cast
-from panoplan.types.arrays import BoolArray, FloatArray
+from panoplan.types.arrays import BoolArray, FloatArray, IntArray
 from panoplan.types.keyframe import Keyframe
-from panoplan.types.layout import Layout
+from panoplan.types.layout import Layout, Spans
 from panoplan.types.pose import Pose
 
 _WALL_POINTS = 128
+_NO_SPANS = Spans(*(np.empty((0, 2)) for _ in range(3)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,6 +30,7 @@ class RoomSeen:
         profile_sigmas: (B,) relative standard deviations of those.
         ceiling: height above the camera, NaN where unknown.
         passages: (B,) whether the layout tells a door or an opening there.
+        windows: (B,) whether it tells a window.
     """
 
     points: FloatArray
@@ -37,6 +39,7 @@ class RoomSeen:
     profile_sigmas: FloatArray
     ceiling: float
     passages: BoolArray
+    windows: BoolArray
 
 
 def room_seen(layout: Layout, config: RegistrationConfig) -> RoomSeen:
@@ -62,6 +65,7 @@ def room_seen(layout: Layout, config: RegistrationConfig) -> RoomSeen:
         layout.width - 1,
     )
     sigmas = relative[at]
+    spans = layout.spans or _NO_SPANS
     # A bin between two known columns has the worst of what is known.
     worst = float(np.nanmax(relative)) if len(known) else 1.0
     return RoomSeen(
@@ -70,19 +74,30 @@ def room_seen(layout: Layout, config: RegistrationConfig) -> RoomSeen:
         log_profile=log_profile,
         profile_sigmas=np.where(np.isfinite(sigmas), sigmas, worst),
         ceiling=view.ceiling - 1.0,
-        passages=_passages(layout)[at],
+        passages=_columns(spans.doors, layout)[at] | _columns(spans.openings, layout)[at],
+        windows=_columns(spans.windows, layout)[at],
     )
 
 
-def _passages(layout: Layout) -> BoolArray:
-    """(W,) columns of a layout's doors and openings."""
+def _columns(spans: FloatArray, layout: Layout) -> BoolArray:
+    """(W,) the columns of some spans of a layout."""
     inside = np.zeros(layout.width, dtype=bool)
-    if layout.spans is not None:
-        columns = np.arange(layout.width)
-        for first, last in (*layout.spans.doors, *layout.spans.openings):
-            within = (columns >= first, columns <= last)
-            inside |= np.logical_and(*within) if first <= last else np.logical_or(*within)
+    columns = np.arange(layout.width)
+    for first, last in spans:
+        within = (columns >= first, columns <= last)
+        inside |= np.logical_and(*within) if first <= last else np.logical_or(*within)
     return inside
+
+
+def looks_out(room: RoomSeen, headings: FloatArray) -> BoolArray:
+    """(M,) whether the layout tells a window or a passage along headings, camera frame."""
+    at = _bins(headings, room)
+    return np.asarray(room.windows[at] | room.passages[at])
+
+
+def _bins(headings: FloatArray, room: RoomSeen) -> IntArray:
+    bins = len(room.log_profile)
+    return ((headings + np.pi) * bins / (2 * np.pi)).astype(int) % bins
 
 
 def log_surface_ranges(
@@ -100,8 +115,7 @@ def log_surface_ranges(
         standard deviations; (M,) whether the surface is floor or ceiling; (M,) whether it is a
         wall with a door or an opening.
     """
-    bins = len(room.log_profile)
-    at = ((headings + np.pi) * bins / (2 * np.pi)).astype(int) % bins
+    at = _bins(headings, room)
     wall, sigma = room.log_profile[at], room.profile_sigmas[at]
     height = np.where(elevations < 0, 1.0, room.ceiling)
     with np.errstate(invalid="ignore", divide="ignore"):

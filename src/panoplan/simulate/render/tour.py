@@ -8,24 +8,25 @@ from pathlib import Path
 
 import numpy as np
 
+from panoplan.errors import InputError
 from panoplan.formats.sequence import write_sequence
-from panoplan.simulate.families import make_building
+from panoplan.simulate.flats import make_flat
 from panoplan.simulate.render.record import Session, record
 from panoplan.simulate.render.scene import QUALITIES
 from panoplan.simulate.scene import Grade, SimulatedScene, noise_model, recorded
 from panoplan.simulate.walks import stills
 
-_FAMILY = "flat"
 _GRADE: Grade = "measured"
-_PHOTOS_A_ROOM = 1.7
-"""As in tours of real homes."""
+_ROOMS, _ROOM_M2, _OPENING_SHARE = (8, 9), 7.5, 0.25
+_PHOTOS_A_ROOM, _IN_DOORWAYS = 1.7, 0.25
+"""As in a real tour, closets counted as rooms; a quarter of its photos stands in a doorway."""
 _WIDTH_PX, _QUALITY = 2048, replace(QUALITIES["still"], samples=1)
 """As many rays as a still of 1024 px has, each a pixel of its own."""
 _FURNISHED = (0.5, 1.0)
 
 
 def tour_home(seed: int) -> SimulatedScene:
-    """A tour of a flat: one photo in each room, the others where there is most floor.
+    """A tour of a flat of small rooms: a photo in each, more in doorways and where most floor is.
 
     Args:
         seed: of the flat, the places and the errors of the layouts, ≥ 0.
@@ -33,16 +34,22 @@ def tour_home(seed: int) -> SimulatedScene:
     Raises:
         InputError: a negative seed.
     """
-    building = make_building(_FAMILY, seed)
+    if seed < 0:
+        raise InputError("seed", str(seed), "0 or more")
     ways, noise, drift = (np.random.default_rng(s) for s in np.random.SeedSequence(seed).spawn(3))
-    way = stills(building, ways, counts=_counts([room.area for room in building.rooms]))
+    rooms = int(ways.integers(_ROOMS[0], _ROOMS[1] + 1))
+    building = make_flat(seed, rooms=rooms, area_m2=_ROOM_M2 * rooms, opening_share=_OPENING_SHARE)
+    photos = round(_PHOTOS_A_ROOM * rooms)
+    doorways = min(round(_IN_DOORWAYS * photos), photos - rooms)
+    counts = _counts([room.area for room in building.rooms], photos - doorways)
+    way = stills(building, ways, counts=counts, doorways=doorways)
     return recorded(building, way, noise_model(_GRADE), 1.0, noise, drift)
 
 
-def _counts(areas: Sequence[float]) -> list[int]:
+def _counts(areas: Sequence[float], photos: int) -> list[int]:
     """Photos of each room: each further one goes where there is most floor a photo."""
     counts = [1] * len(areas)
-    while sum(counts) < round(_PHOTOS_A_ROOM * len(areas)):
+    while sum(counts) < photos:
         floor = [area / count for area, count in zip(areas, counts, strict=True)]
         counts[int(np.argmax(floor))] += 1
     return counts
