@@ -213,7 +213,7 @@ class Merger:
 
     Attributes:
         poses: of all photos, settled.
-        gained: evidence more than the groups have apart, nats.
+        gained: evidence across the groups, less what each of them loses by it, nats.
         lead: over the best other place of the second group beside the first one, nats.
     """
 
@@ -281,8 +281,10 @@ def merged(one: Poses, other: Poses, placings: list[Placing], atlas: Atlas) -> M
     for placing in _rivals(one, other, placings, config):
         poses = atlas.settled(one | placing.moved)
         parts = [{k: poses[k] for k in group} for group in (one, other)]
-        gained = atlas.between(*parts) + sum(map(atlas.within, parts)) - apart
-        tried.append((gained + atlas.turned(placing.candidate), poses))
+        # That a group fits itself better after settling once more speaks for no place of the other.
+        lost = min(0.0, sum(map(atlas.within, parts)) - apart)
+        gained = atlas.between(*parts) + lost + atlas.turned(placing.candidate)
+        tried.append((gained, poses))
     tried.sort(key=lambda t: -t[0])
     gained, poses = tried[0]
     others = [g for g, p in tried[1:] if differ(one, other, poses, p, config)]
