@@ -59,8 +59,8 @@ def test_an_ordinary_answer_is_believed():
 
 @pytest.fixture(scope="module")
 def rendered():
-    """Panoramas of a home that the shipped network has not seen."""
-    return [sample.image for sample in islice(samples(10**7, 6), 6)]
+    """Panoramas of two homes that the shipped network has not seen."""
+    return [sample.image for sample in islice(samples(10**7, 6), 12)]
 
 
 def _doubts(images):
@@ -70,7 +70,7 @@ def _doubts(images):
 
 def test_most_rendered_rooms_are_believed(rendered):
     """Cameras near a wall or low above the floor may be doubted."""
-    assert _doubts(rendered).count(None) >= 4
+    assert _doubts(rendered).count(None) >= 8
 
 
 @pytest.mark.parametrize(

@@ -156,10 +156,11 @@ def stills(
         count = drawn if counts is None else counts[room]
         spots = _waypoints(_Footing(building, room), rng, count)
         places += [np.append(spot, building.floor_m(room)) for spot in spots]
-    passages = building.passages
-    for k in rng.permutation(len(passages))[:doorways]:
-        middle = passages[k].area.mean(axis=0)
-        places.append(np.append(middle, building.floor_m(passages[k].rooms[0])))
+    if doorways:
+        for k in rng.permutation(len(building.passages))[:doorways]:
+            passage = building.passages[k]
+            middle = passage.area.mean(axis=0)
+            places.append(np.append(middle, building.floor_m(passage.rooms[0])))
     standing = np.array(places)
     beta = rng.uniform(-np.pi, np.pi, len(standing))
     bob = 0.005 * rng.standard_normal(len(standing))
