@@ -196,6 +196,8 @@ def _wings(
     style: Style, count: int, area: float, skewed: bool, rng: np.random.Generator
 ) -> list[Wing] | None:
     choices = [(shape, weight) for few, most, shape, weight in style.shapes if few <= count <= most]
+    if not choices:
+        return None
     weights = np.array([weight for _, weight in choices])
     shape = choices[int(rng.choice(len(choices), p=weights / weights.sum()))][0]
     # A house of one wing is no longer than about twice its depth, one of several no more slender
