@@ -1,6 +1,6 @@
 """Tables of walks and tours, from figures as the benchmarks write them."""
 
-from panoplan.bench.pose_tables import tours, walks
+from panoplan.bench.pose_tables import plans, tours, walks
 
 MACHINE = {"machine": {"cores": 2, "processor": "any"}, "settings": {"preset": "default"}}
 
@@ -57,3 +57,26 @@ def test_walks_tell_errors_at_the_end_and_as_given():
 
 def test_nothing_measured_is_no_table():
     assert walks([]) == tours([]) == ""
+
+
+def _rooms(half, seven):
+    scores = [
+        {"iou": iou, "hits": hits, "predicted": 7, "true": 6}
+        for iou, hits in ((0.3, 6), (0.5, half), (0.7, seven))
+    ]
+    return {"rooms": {"scores": scores, "mean_iou": 0.9}}
+
+
+def test_plans_are_summed_over_walks():
+    figures = [
+        {"scene": "one", "plans": {"true_poses_true_layouts": _rooms(6, 6),
+                                   "true_layouts": _rooms(6, 5), "images_alone": _rooms(4, 2)}},
+        {"scene": "two", "plans": {"true_poses_true_layouts": _rooms(6, 6),
+                                   "true_layouts": _rooms(6, 6), "images_alone": _rooms(5, 3)}},
+        {"scene": "three"},
+    ]  # fmt: skip
+    text = plans([{"benchmark": "odometry", "figures": figures, **MACHINE}])
+    assert "| one | 6, 6, 7 of 6 | 0.900 | 6, 5, 7 of 6 | 0.900 | 4, 2, 7 of 6 | 0.900 |" in text
+    assert "| all | 12, 12, 14 of 12 | – | 12, 11, 14 of 12 | – | 9, 5, 14 of 12 | – |" in text
+    assert "three" not in text
+    assert plans([{"benchmark": "odometry", "figures": figures[2:], **MACHINE}]) == ""

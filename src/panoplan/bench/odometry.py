@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -11,12 +11,14 @@ from typing import Any
 
 import numpy as np
 
+from panoplan.bench.estimate import estimate, predicted
 from panoplan.cache import Cache
 from panoplan.config import Config
 from panoplan.datasets.detect import image_files
+from panoplan.datasets.folder import read_truth
 from panoplan.errors import InputError
 from panoplan.estimator.state import Walk
-from panoplan.formats.sequence import DESCRIPTION, TRUE_TRAJECTORY
+from panoplan.formats.sequence import DESCRIPTION, TRUE_LAYOUTS, TRUE_TRAJECTORY, read_sequence
 from panoplan.formats.tum import read_tum
 from panoplan.geometry.similarity import fit_similarity
 from panoplan.intake.level_images import LevelImages
@@ -24,9 +26,13 @@ from panoplan.intake.live import LivePlan
 from panoplan.intake.panoramas import Panoramas
 from panoplan.intake.scene_folder import IMAGES
 from panoplan.intake.walk import looker
+from panoplan.layouts.files import list_layouts, read_layout
 from panoplan.layouts.onnx import OnnxLayouts
+from panoplan.metrics.presentation import as_dict
+from panoplan.metrics.report import evaluate
 from panoplan.pipeline import Progress
 from panoplan.poses.associate import Panorama, associate
+from panoplan.poses.level import level, upright
 from panoplan.poses.walk.carried import carried
 from panoplan.poses.walk.features import Extractor, sharpness
 from panoplan.poses.walk.follow import (
@@ -41,6 +47,8 @@ from panoplan.poses.walk.keyframes import EVERY_IMAGE, KeyframeChooser
 from panoplan.poses.walk.odometry import Odometry
 from panoplan.simulate.render.filmed import TROUBLES, film_badly, film_walk, filmed_home
 from panoplan.simulate.scene import SimulatedScene
+from panoplan.types.keyframe import Keyframe
+from panoplan.types.layout import Layout
 from panoplan.types.plan import FloorPlan
 from panoplan.types.pose import Pose, Trajectory
 
@@ -93,30 +101,40 @@ def _rendering(progress: Progress, name: str, done: int, total: int) -> None:
 
 
 def measure(
-    folders: Sequence[Path], config: Config, live: OnnxLayouts | None, report: Progress
+    folders: Sequence[Path],
+    config: Config,
+    report: Progress,
+    *,
+    live: OnnxLayouts | None = None,
+    plans: OnnxLayouts | None = None,
 ) -> list[dict[str, Any]]:
     """Follows walks and compares with the truth.
 
     Args:
         folders: each with images and trajectory_gt.tum.
-        config: settings of the live plan.
+        config: settings of the plans.
+        report: is told how far the work has come.
         live: network with which each walk is followed once more, its plan growing meanwhile; None
             for no live plan.
-        report: is told how far the work has come.
+        plans: network whose plan of each walk is compared with the truth, as is that of the true
+            layouts with the poses found and with the true ones; None for no plans.
 
     Returns:
         A walk's figures each: keyframes with a pose in the largest map, error of their positions
         after a similarity, in cm and in percent of the way, for the poses at the time they were
         given and for the final ones; seconds of processor time a keyframe; where asked for, how
-        long after its image was read a keyframe stood in the live plan, seconds of the clock.
+        long after its image was read a keyframe stood in the live plan, seconds of the clock, and
+        the figures of three plans.
 
     Raises:
-        InputError: images or true poses are missing.
+        InputError: images, true poses or what plans are compared with are missing.
         MissingExtraError: pycolmap is not installed.
     """
     walks = []
     for folder in folders:
-        told = _walk(folder, report)
+        told, found = _walk(folder, report)
+        if plans is not None and found is not None:
+            told["plans"] = _plans(folder, found, config, plans, report)
         if live is not None:
             told["plan_lag_s"] = _lags(folder, config, live, report)
         walks.append(told)
@@ -150,7 +168,43 @@ def _lags(folder: Path, config: Config, network: OnnxLayouts, report: Progress) 
     return {**_spread(values), "longest": max(values, default=0.0)}
 
 
-def _walk(folder: Path, report: Progress) -> dict[str, Any]:
+def _plans(
+    folder: Path, found: Trajectory, config: Config, network: OnnxLayouts, report: Progress
+) -> dict[str, Any]:
+    """Figures of the plans of a walk's largest map, in metres by the camera height."""
+    sequence, truth = read_sequence(folder), read_truth(folder)
+    true, height = truth.trajectory, sequence.camera_height_m
+    if true is None or height is None:
+        raise InputError(folder, "no true poses or no camera height", "a rendered walk")
+    files = list_layouts(folder / TRUE_LAYOUTS)
+    layouts = {name: read_layout(files[name]) for name in found.labels}
+    numbers = [true.labels.index(name) for name in found.labels]
+    poses, _ = level(found)
+    stand = Trajectory(poses.labels, upright(poses.rotations), poses.translations)
+    with TemporaryDirectory() as work:
+        place = Path(work)
+        panoramas = Panoramas.of_images(folder, image_files(folder))
+        LevelImages(place).complete(panoramas, poses, report)
+        pictures = {name: place / f"{name}.jpg" for name in poses.labels}
+        asked = predicted(pictures, network, report)
+
+    def compared(at: Sequence[Pose], told: Mapping[str, Layout]) -> dict[str, Any]:
+        keyframes = [
+            Keyframe(name, pose, told.get(name), "" if name in told else "no layout")
+            for name, pose in zip(found.labels, at, strict=True)
+        ]
+        plan = estimate(keyframes, config, Walk("unknown", height, len(keyframes)))
+        return as_dict(evaluate(plan, truth, align="rigid"))
+
+    return {
+        "true_poses_true_layouts": compared([true[n] for n in numbers], layouts),
+        "true_layouts": compared([poses[k] for k in range(len(poses))], layouts),
+        "images_alone": compared([stand[k] for k in range(len(stand))], asked),
+    }
+
+
+def _walk(folder: Path, report: Progress) -> tuple[dict[str, Any], Trajectory | None]:
+    """A walk's figures, and the poses of its largest map."""
     images = image_files(folder)
     if not images:
         raise InputError(folder, "no image", "a rendered walk")
@@ -179,7 +233,7 @@ def _walk(folder: Path, report: Progress) -> dict[str, Any]:
     finishing = time.process_time() - started
     final = odometry.poses()
     largest = max(given.values(), key=len, default={})
-    return {
+    figures = {
         "scene": folder.name,
         "frames": len(images),
         "keyframes": len(names),
@@ -194,6 +248,16 @@ def _walk(folder: Path, report: Progress) -> dict[str, Any]:
         "cpu_s_finishing": finishing,
         "keyframes_a_cpu_second": len(seconds) / max(sum(seconds), 1e-9),
     }
+    return figures, _trajectory(final[0], names) if final else None
+
+
+def _trajectory(poses: Mapping[int, Pose], names: Sequence[str]) -> Trajectory:
+    numbers = sorted(poses)
+    return Trajectory(
+        tuple(names[n] for n in numbers),
+        np.array([poses[n].rotation for n in numbers]),
+        np.array([poses[n].translation for n in numbers]),
+    )
 
 
 def _truth(folder: Path, names: list[str]) -> dict[str, Pose]:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
+
 from panoplan.bench.markdown import number, table
 from panoplan.bench.record import of_benchmark
 
@@ -41,6 +43,48 @@ def walks(files: list[dict[str, Any]]) -> str:
             f"by the clock.\n\n{table(heads, rows)}"
         )
     return "\n".join(parts)
+
+
+def plans(files: list[dict[str, Any]]) -> str:
+    """What plans come of rendered walks whose poses were found in the images."""
+    rows, sums = [], {key: np.zeros(4, dtype=int) for key in _PLANS}
+    for data in of_benchmark(files, "odometry"):
+        for f in data["figures"]:
+            if "plans" not in f:
+                continue
+            told = []
+            for key in _PLANS:
+                figures = f["plans"][key]["rooms"]
+                half, seven = (_score(figures, iou) for iou in (0.5, 0.7))
+                counts = [half["hits"], seven["hits"], half["predicted"], half["true"]]
+                sums[key] += counts
+                told += [_found(counts), number(figures["mean_iou"], 3)]
+            rows.append([f["scene"], *told])
+    if not rows:
+        return ""
+    rows.append(["all", *(cell for counts in sums.values() for cell in (_found(counts), "–"))])
+    heads = ["walk", *(head for name in _PLANS.values() for head in (name, "mean IoU"))]
+    title = (
+        "Plans of rendered walks: rooms found at IoU .5, at .7, told by the plan, and true ones; "
+        "scale recovered, metres by the camera height, rigidly aligned."
+    )
+    return f"{title}\n\n{table(heads, rows)}"
+
+
+_PLANS = {
+    "true_poses_true_layouts": "true poses and layouts",
+    "true_layouts": "poses from the images, true layouts",
+    "images_alone": "images alone, shipped network",
+}
+
+
+def _found(counts: Sequence[int]) -> str:
+    return "{}, {}, {} of {}".format(*counts)
+
+
+def _score(rooms: dict[str, Any], iou: float) -> dict[str, Any]:
+    (score,) = (score for score in rooms["scores"] if score["iou"] == iou)
+    return dict(score)
 
 
 def tours(files: list[dict[str, Any]]) -> str:
@@ -84,7 +128,7 @@ def _tour(name: str, figures: dict[str, Any]) -> list[str]:
 
 def _rooms(plan: dict[str, Any]) -> tuple[int, int]:
     """Rooms found at IoU 0.5, and true ones."""
-    (half,) = (score for score in plan["rooms"]["scores"] if score["iou"] == 0.5)
+    half = _score(plan["rooms"], 0.5)
     return half["hits"], half["true"]
 
 

@@ -87,6 +87,7 @@ def updated(text: str, folder: Path, page: Path) -> str:
         "model": export_tables.model,
         "runtime": _runtime,
         "walks": pose_tables.walks,
+        "plans": pose_tables.plans,
         "tours": pose_tables.tours,
         "files": _files,
     }

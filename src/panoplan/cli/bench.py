@@ -85,6 +85,11 @@ def add_parser(commands: Any) -> None:
         action="store_true",
         help="odometry: also how far a plan that grows meanwhile lags behind (--model)",
     )
+    parser.add_argument(
+        "--plans",
+        action="store_true",
+        help="odometry: also the plans of the walks, by the network (--model) and by true layouts",
+    )
     parser.add_argument("--metric", action="store_true", help="accuracy: the scale is given")
     parser.add_argument(
         "--jobs",
@@ -106,7 +111,12 @@ def add_parser(commands: Any) -> None:
     parser.set_defaults(act=act)
 
 
-_ONLY = {"rendered": ("tour", "odometry"), "predict": ("home", "tour"), "live": ("odometry",)}
+_ONLY = {
+    "rendered": ("tour", "odometry"),
+    "predict": ("home", "tour"),
+    "live": ("odometry",),
+    "plans": ("odometry",),
+}
 """Options that mean nothing to other benchmarks."""
 
 
@@ -190,8 +200,9 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
         "odometry": lambda: odometry.measure(
             odometry.rendered(place, report) if options.rendered else _scenes(place),
             config,
-            OnnxLayouts(options.model or SHIPPED) if options.live else None,
             report,
+            live=OnnxLayouts(options.model or SHIPPED) if options.live else None,
+            plans=OnnxLayouts(options.model or SHIPPED) if options.plans else None,
         ),
         "tour": lambda: tour.measure(
             tour.rendered(place, options.seeds or tour.RENDERED_SEEDS, report)
