@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -78,7 +78,7 @@ _PLANS = {
 }
 
 
-def _found(counts: Sequence[int]) -> str:
+def _found(counts: Iterable[int]) -> str:
     return "{}, {}, {} of {}".format(*counts)
 
 
