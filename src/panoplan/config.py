@@ -1374,6 +1374,27 @@ class TourConfig:
         low=0.0,
         high=1000.0,
     )
+    near_ch: float = _setting(
+        0.7,
+        "Two photos nearer than this in one room must have much in common.",
+        unit="ch",
+        low=0.0,
+        high=10.0,
+    )
+    near_evidence: float = _setting(
+        75.0,
+        "Evidence of matches that is much; of rendered tours none so near has less than 200.",
+        unit="nats",
+        low=1.0,
+        high=1e5,
+    )
+    near_cost: float = _setting(
+        25.0,
+        "What speaks against two photos so near in one room that have nothing in common.",
+        unit="nats",
+        low=0.0,
+        high=1000.0,
+    )
     candidate_evidence: float = _setting(
         8.0,
         "Relative poses of two photos with less evidence are not tried.",

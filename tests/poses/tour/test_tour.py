@@ -11,6 +11,7 @@ from panoplan.poses.tour.features import Features
 from panoplan.poses.tour.frames import relative
 from panoplan.poses.tour.heading import quarter_difference, wall_heading, yaw_prior
 from panoplan.poses.tour.matching import Matches, placed
+from panoplan.poses.tour.pair import Pair, Place
 from panoplan.poses.tour.room import log_surface_ranges, room_seen
 from panoplan.poses.tour.tour import join_tour
 from panoplan.simulate.buildings import l_shape, single_room
@@ -198,3 +199,16 @@ def test_what_is_far_outside_tells_no_place():
     matches = Matches(angles, np.arange(1.0, 6.0))
     assert placed(matches, room, room, TourConfig()).prior.tolist() == [3.0, 4.0, 5.0]
     assert placed(matches, room, None, TourConfig()) is matches
+
+
+def test_two_photos_near_in_one_room_must_have_much_in_common():
+    """Rectangles fit rectangles: the walls alone would take two like rooms for one."""
+    view = Home(0).view([1.0, 1.2, 0.0]).layout
+    config = TourConfig()
+    place = Place("a", room_seen(view, RegistrationConfig()), None)
+    nothing = Matches(np.empty((0, 4)), np.empty(0))
+    pair = Pair(place, replace(place, name="b"), nothing, config)
+    near = pair.evidence(np.array([0.0, 0.01, 0.0])).walls
+    assert near == pytest.approx(config.walls_cap - config.near_cost)
+    lax = Pair(place, replace(place, name="b"), nothing, replace(config, near_ch=0.0))
+    assert lax.evidence(np.array([0.0, 0.01, 0.0])).walls == pytest.approx(config.walls_cap)

@@ -48,7 +48,8 @@ class Evidence(NamedTuple):
     Attributes:
         features: matches that agree with yaw and direction.
         lifted: where the matched points lie in the two rooms, at this length.
-        walls: how the walls of the two rooms fit.
+        walls: how the walls of the two rooms fit; against it where two cameras that near in one
+            room have too little in common.
     """
 
     features: float
@@ -202,7 +203,11 @@ class Pair:
         features, inlier = self._features(yaw, direction)
         log_length = np.array([np.log(max(length, self.config.shortest_ch))])
         lifted = self._lifted(yaw, direction, inlier, log_length)[0] if features > 0 else 0.0
-        return Evidence(features, float(lifted), float(self._walls(yaw, place[None])[0]))
+        walls = float(self._walls(yaw, place[None])[0])
+        if walls > 0 and length < self.config.near_ch:
+            # So near in one room nearly everything is seen by both.
+            walls -= self.config.near_cost * max(0.0, 1 - features / self.config.near_evidence)
+        return Evidence(features, float(lifted), walls)
 
     def features(self, b_in_a: FloatArray) -> float:
         """Evidence of the matches alone for a pose of the second camera beside the first one."""
