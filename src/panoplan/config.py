@@ -1374,23 +1374,23 @@ class TourConfig:
         low=0.0,
         high=1000.0,
     )
-    near_ch: float = _setting(
+    same_room_near_ch: float = _setting(
         0.7,
         "Two photos nearer than this in one room must have much in common.",
-        unit="ch",
+        unit="camera heights",
         low=0.0,
         high=10.0,
     )
-    near_evidence: float = _setting(
+    same_room_evidence: float = _setting(
         75.0,
-        "Evidence of matches that is much; of rendered tours none so near has less than 200.",
+        "Evidence of matches that is as much as photos so near in one room have at the least.",
         unit="nats",
         low=1.0,
         high=1e5,
     )
-    near_cost: float = _setting(
+    same_room_cost: float = _setting(
         25.0,
-        "What speaks against two photos so near in one room that have nothing in common.",
+        "What speaks against two photos so near in one room with nothing in common.",
         unit="nats",
         low=0.0,
         high=1000.0,

@@ -209,6 +209,6 @@ def test_two_photos_near_in_one_room_must_have_much_in_common():
     nothing = Matches(np.empty((0, 4)), np.empty(0))
     pair = Pair(place, replace(place, name="b"), nothing, config)
     near = pair.evidence(np.array([0.0, 0.01, 0.0])).walls
-    assert near == pytest.approx(config.walls_cap - config.near_cost)
-    lax = Pair(place, replace(place, name="b"), nothing, replace(config, near_ch=0.0))
+    assert near == pytest.approx(config.walls_cap - config.same_room_cost)
+    lax = Pair(place, replace(place, name="b"), nothing, replace(config, same_room_near_ch=0.0))
     assert lax.evidence(np.array([0.0, 0.01, 0.0])).walls == pytest.approx(config.walls_cap)

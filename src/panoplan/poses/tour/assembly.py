@@ -276,13 +276,15 @@ def merged(one: Poses, other: Poses, placings: list[Placing], atlas: Atlas) -> M
         atlas: the pairs.
     """
     config = atlas.config
-    apart = atlas.within(one) + atlas.within(other)
+    apart = [atlas.within(group) for group in (one, other)]
     tried: list[tuple[float, Poses]] = []
     for placing in _rivals(one, other, placings, config):
         poses = atlas.settled(one | placing.moved)
         parts = [{k: poses[k] for k in group} for group in (one, other)]
         # That a group fits itself better after settling once more speaks for no place of the other.
-        lost = min(0.0, sum(map(atlas.within, parts)) - apart)
+        lost = sum(
+            min(0.0, atlas.within(part) - before) for part, before in zip(parts, apart, strict=True)
+        )
         gained = atlas.between(*parts) + lost + atlas.turned(placing.candidate)
         tried.append((gained, poses))
     tried.sort(key=lambda t: -t[0])

@@ -204,10 +204,15 @@ class Pair:
         log_length = np.array([np.log(max(length, self.config.shortest_ch))])
         lifted = self._lifted(yaw, direction, inlier, log_length)[0] if features > 0 else 0.0
         walls = float(self._walls(yaw, place[None])[0])
-        if walls > 0 and length < self.config.near_ch:
-            # So near in one room nearly everything is seen by both.
-            walls -= self.config.near_cost * max(0.0, 1 - features / self.config.near_evidence)
-        return Evidence(features, float(lifted), walls)
+        return Evidence(features, float(lifted), walls - self._strange(length, features, walls))
+
+    def _strange(self, length: float, features: float, walls: float) -> float:
+        """What speaks against one room of which two cameras so near have so little in common."""
+        config = self.config
+        if length >= config.same_room_near_ch or walls <= 0:
+            return 0.0
+        share_missing = max(0.0, 1 - features / config.same_room_evidence)
+        return config.same_room_cost * share_missing * walls / config.walls_cap
 
     def features(self, b_in_a: FloatArray) -> float:
         """Evidence of the matches alone for a pose of the second camera beside the first one."""
