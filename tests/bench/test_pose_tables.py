@@ -76,7 +76,13 @@ def test_plans_are_summed_over_walks():
         {"scene": "three"},
     ]  # fmt: skip
     text = plans([{"benchmark": "odometry", "figures": figures, **MACHINE}])
-    assert "| one | 6, 6, 7 of 6 | 0.900 | 6, 5, 7 of 6 | 0.900 | 4, 2, 7 of 6 | 0.900 |" in text
-    assert "| all | 12, 12, 14 of 12 | – | 12, 11, 14 of 12 | – | 9, 5, 14 of 12 | – |" in text
+    assert (
+        "| one | 6 / 6 of 6, 7 told | 0.900 | 6 / 5 of 6, 7 told | 0.900 | 4 / 2 of 6, 7 told |"
+        in text
+    )
+    assert (
+        "| all | 12 / 12 of 12, 14 told | – | 12 / 11 of 12, 14 told | – | 9 / 5 of 12, 14 told |"
+        in text
+    )
     assert "three" not in text
     assert plans([{"benchmark": "odometry", "figures": figures[2:], **MACHINE}]) == ""

@@ -14,6 +14,7 @@ from panoplan.cli.main import main
             ["exports", "home", "--predict"],
             "--predict: found bench exports; expected bench home or",
         ),
+        (["v1", "--predict"], "--predict: found bench v1; expected bench home or bench tour"),
         (["tour", "tours", "--live"], "--live: found bench tour; expected bench odometry"),
         (["odometry", "nowhere"], "nowhere: found no folder"),
         (["odometry", "."], "found no trajectory_gt.tum"),

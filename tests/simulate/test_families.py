@@ -1,3 +1,4 @@
+from dataclasses import replace
 from itertools import combinations
 
 import numpy as np
@@ -13,6 +14,7 @@ from panoplan.simulate.families import (
     make_building,
     simulate_scene,
 )
+from panoplan.simulate.houses import make_house
 from panoplan.simulate.joining import SERVANT, SHARED, WAYS
 
 SEEDS = range(50)
@@ -191,3 +193,9 @@ def has_a_court(house):
     )
     rings = [ring for part in shapely.get_parts(outline) for ring in part.interiors]
     return any(shapely.Polygon(ring).area > 6 for ring in rings)
+
+
+def test_more_rooms_than_any_shape_holds_are_refused():
+    style = replace(family_of("flat").style, closet_share=0.0)
+    with pytest.raises(InputError, match="14 rooms in 150 m²"):
+        make_house("home", style, 14, 150.0, np.random.default_rng(0))

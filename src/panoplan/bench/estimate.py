@@ -1,4 +1,4 @@
-"""The plan of a walk, as every benchmark makes it."""
+"""The plan of a walk, as every benchmark makes it, and what it is made of."""
 
 from __future__ import annotations
 
@@ -8,6 +8,7 @@ from pathlib import Path
 from panoplan.config import Config
 from panoplan.datasets.detect import open_scene
 from panoplan.datasets.scene import Scene
+from panoplan.errors import InputError
 from panoplan.estimator.front import FloorPlanEstimator
 from panoplan.estimator.state import Walk
 from panoplan.formats.image import read_panorama
@@ -39,15 +40,25 @@ def true_poses(folder: Path) -> Scene:
 
 
 def images_of(folder: Path) -> dict[str, Path]:
-    """The images of a sequence folder by their keyframes' ids."""
-    keyframes = read_sequence(folder).keyframes
-    return {k.id: folder / k.image for k in keyframes if k.image}
+    """The images of a sequence folder by their keyframes' ids.
+
+    Raises:
+        InputError: it has none, or is no sequence folder.
+    """
+    found = {k.id: folder / k.image for k in read_sequence(folder).keyframes if k.image}
+    if not found:
+        raise InputError(folder, "no image", "a scene with images")
+    return found
 
 
 def predicted(
     images: Mapping[str, Path], network: OnnxLayouts, progress: Progress
 ) -> dict[str, Layout]:
-    """A network's layouts of images, without those whose answer cannot be believed."""
+    """A network's layouts of images, without those whose answer cannot be believed.
+
+    Raises:
+        InputError: an image cannot be read.
+    """
     found = {}
     for done, (name, path) in enumerate(images.items()):
         progress(done, len(images), "layouts")

@@ -28,7 +28,7 @@ def measure(
     """Runs the method on a sequence folder with its true poses.
 
     Args:
-        folder: with trajectory_gt.tum, predicted layouts, and the true plan.
+        folder: with trajectory_gt.tum, the true plan, and images or predicted layouts.
         config: settings.
         network: is asked for the layouts; None for those in the folder.
         progress: is told how far that has come.
@@ -46,7 +46,7 @@ def measure(
     if network is not None:
         layouts = predicted(images_of(folder), network, progress)
         told = tuple(replace(k, layout=layouts.get(k.id)) for k in told)
-    asked = "files" if network is None else "network"
+    asked = "files" if network is None else network.spec.name
     result: dict[str, Any] = {"scene": folder.name, "layouts": asked}
     for name in ("metric", "recovered"):
         metric = name == "metric"

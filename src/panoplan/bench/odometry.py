@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -30,6 +31,7 @@ from panoplan.layouts.files import list_layouts, read_layout
 from panoplan.layouts.onnx import OnnxLayouts
 from panoplan.metrics.presentation import as_dict
 from panoplan.metrics.report import evaluate
+from panoplan.metrics.rooms import THRESHOLDS
 from panoplan.pipeline import Progress
 from panoplan.poses.associate import Panorama, associate
 from panoplan.poses.level import level, upright
@@ -41,6 +43,7 @@ from panoplan.poses.walk.follow import (
     Seen,
     WalkSettings,
     follow,
+    trajectory_of_map,
     working_grey,
 )
 from panoplan.poses.walk.keyframes import EVERY_IMAGE, KeyframeChooser
@@ -51,6 +54,7 @@ from panoplan.types.keyframe import Keyframe
 from panoplan.types.layout import Layout
 from panoplan.types.plan import FloorPlan
 from panoplan.types.pose import Pose, Trajectory
+from panoplan.types.truth import GroundTruth
 
 _ENDS = 50
 _GROSS_M, _GROSS_DEG = 0.10, 2.0
@@ -64,7 +68,8 @@ def rendered(folder: Path, progress: Progress) -> list[Path]:
 
     Args:
         folder: gets a sequence folder a walk: three buildings with two looks each, and the first
-            of them with a bare white corridor and with each of the troubles that pictures can have.
+            of them furnished anew but for a bare white corridor, and with each of the troubles that
+            pictures can have.
         progress: is told how far the work has come.
 
     Returns:
@@ -74,20 +79,23 @@ def rendered(folder: Path, progress: Progress) -> list[Path]:
         InputError: a place that cannot be written.
         MissingExtraError: the `render` extra is not installed.
     """
-    folders = []
 
-    def filmed(walk: SimulatedScene, look: int, name: str, *, bare_corridor: bool = False) -> None:
-        folders.append(folder / name)
-        if not (folders[-1] / DESCRIPTION).exists():
+    def filmed(walk: SimulatedScene, look: int, name: str, *, bare_corridor: bool = False) -> Path:
+        place = folder / name
+        if not (place / DESCRIPTION).exists():
             told = partial(_rendering, progress, name)
-            film_walk(folders[-1], walk, look, told, bare_corridor=bare_corridor)
+            film_walk(place, walk, look, told, bare_corridor=bare_corridor)
+        return place
 
     walks = {seed: filmed_home(seed) for seed in RENDERED_SEEDS}
-    for seed, walk in walks.items():
-        for look in range(_LOOKS):
-            filmed(walk, len(RENDERED_SEEDS) * look + seed, f"walk_{seed}_look_{look}")
+    folders = [
+        filmed(walk, len(RENDERED_SEEDS) * look + seed, f"walk_{seed}_look_{look}")
+        for seed, walk in walks.items()
+        for look in range(_LOOKS)
+    ]
     first = RENDERED_SEEDS[0]
-    filmed(walks[first], first, f"{folders[0].name}_bare_corridor", bare_corridor=True)
+    bare = f"{folders[0].name}_bare_corridor"
+    folders.append(filmed(walks[first], first, bare, bare_corridor=True))
     for trouble in TROUBLES:
         place = folder / f"{folders[0].name}_{trouble}"
         if not place.exists():
@@ -132,9 +140,10 @@ def measure(
     """
     walks = []
     for folder in folders:
+        known = None if plans is None else _known(folder)
         told, found = _walk(folder, report)
-        if plans is not None and found is not None:
-            told["plans"] = _plans(folder, found, config, plans, report)
+        if plans is not None and known is not None:
+            told["plans"] = _plans(folder, known, found, config, plans, report)
         if live is not None:
             told["plan_lag_s"] = _lags(folder, config, live, report)
         walks.append(told)
@@ -168,17 +177,41 @@ def _lags(folder: Path, config: Config, network: OnnxLayouts, report: Progress) 
     return {**_spread(values), "longest": max(values, default=0.0)}
 
 
-def _plans(
-    folder: Path, found: Trajectory, config: Config, network: OnnxLayouts, report: Progress
-) -> dict[str, Any]:
-    """Figures of the plans of a walk's largest map, in metres by the camera height."""
+@dataclass(frozen=True, eq=False)
+class _Known:
+    """What is true of a rendered walk, by the names of its images."""
+
+    truth: GroundTruth
+    poses: Mapping[str, Pose]
+    layouts: Mapping[str, Path]
+    height_m: float
+
+
+def _known(folder: Path) -> _Known:
     sequence, truth = read_sequence(folder), read_truth(folder)
     true, height = truth.trajectory, sequence.camera_height_m
     if true is None or height is None:
         raise InputError(folder, "no true poses or no camera height", "a rendered walk")
     files = list_layouts(folder / TRUE_LAYOUTS)
-    layouts = {name: read_layout(files[name]) for name in found.labels}
-    numbers = [true.labels.index(name) for name in found.labels]
+    poses = {label: true[k] for k, label in enumerate(true.labels)}
+    for path in image_files(folder):
+        if path.stem not in files or path.stem not in poses:
+            raise InputError(path, "no true layout or no true pose", "a rendered walk")
+    return _Known(truth, poses, files, height)
+
+
+def _plans(
+    folder: Path,
+    known: _Known,
+    found: Trajectory | None,
+    config: Config,
+    network: OnnxLayouts,
+    report: Progress,
+) -> dict[str, Any]:
+    """Figures of the plans of a walk's largest map, in metres by the camera height."""
+    if found is None:
+        return dict.fromkeys(PLANS, _nothing_found(len(known.truth.plan.rooms)))
+    layouts = {name: read_layout(known.layouts[name]) for name in found.labels}
     poses, _ = level(found)
     stand = Trajectory(poses.labels, upright(poses.rotations), poses.translations)
     with TemporaryDirectory() as work:
@@ -189,18 +222,31 @@ def _plans(
         asked = predicted(pictures, network, report)
 
     def compared(at: Sequence[Pose], told: Mapping[str, Layout]) -> dict[str, Any]:
+        if not told:
+            return _nothing_found(len(known.truth.plan.rooms))
         keyframes = [
             Keyframe(name, pose, told.get(name), "" if name in told else "no layout")
             for name, pose in zip(found.labels, at, strict=True)
         ]
-        plan = estimate(keyframes, config, Walk("unknown", height, len(keyframes)))
-        return as_dict(evaluate(plan, truth, align="rigid"))
+        plan = estimate(keyframes, config, Walk("unknown", known.height_m, len(keyframes)))
+        return as_dict(evaluate(plan, known.truth, align="rigid"))
 
-    return {
-        "true_poses_true_layouts": compared([true[n] for n in numbers], layouts),
-        "true_layouts": compared([poses[k] for k in range(len(poses))], layouts),
-        "images_alone": compared([stand[k] for k in range(len(stand))], asked),
-    }
+    made = (
+        compared([known.poses[name] for name in found.labels], layouts),
+        compared([poses[k] for k in range(len(poses))], layouts),
+        compared([stand[k] for k in range(len(stand))], asked),
+    )
+    return {"network": network.spec.name, **dict(zip(PLANS, made, strict=True))}
+
+
+PLANS = ("true_poses_true_layouts", "true_layouts", "images_alone")
+"""The plans of a walk: of true poses and layouts, of poses found and true layouts, of images."""
+
+
+def _nothing_found(rooms: int) -> dict[str, Any]:
+    none = {"hits": 0, "predicted": 0, "true": rooms}
+    scores = [{"iou": iou, **none} for iou in THRESHOLDS]
+    return {"rooms": {"scores": scores, "mean_iou": None}}
 
 
 def _walk(folder: Path, report: Progress) -> tuple[dict[str, Any], Trajectory | None]:
@@ -248,16 +294,7 @@ def _walk(folder: Path, report: Progress) -> tuple[dict[str, Any], Trajectory | 
         "cpu_s_finishing": finishing,
         "keyframes_a_cpu_second": len(seconds) / max(sum(seconds), 1e-9),
     }
-    return figures, _trajectory(final[0], names) if final else None
-
-
-def _trajectory(poses: Mapping[int, Pose], names: Sequence[str]) -> Trajectory:
-    numbers = sorted(poses)
-    return Trajectory(
-        tuple(names[n] for n in numbers),
-        np.array([poses[n].rotation for n in numbers]),
-        np.array([poses[n].translation for n in numbers]),
-    )
+    return figures, trajectory_of_map(names, final[0]) if final else None
 
 
 def _truth(folder: Path, names: list[str]) -> dict[str, Pose]:

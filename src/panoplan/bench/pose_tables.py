@@ -37,9 +37,10 @@ def walks(files: list[dict[str, Any]]) -> str:
             "worst as given", "keyframes a CPU second", "last 50 / first 50", "plan's lag",
         ]  # fmt: skip
         parts.append(
-            "Rendered walks; position errors after a similarity (root mean square, percent of the "
-            "way), at the end and as each pose was given; time a keyframe at 95 %, of the last 50 "
-            "and of the first; how long at 95 % a keyframe takes from its image to the live plan, "
+            "Rendered walks; way and position errors of the largest map, after a similarity (root "
+            "mean square, percent of the way), at the end and as each pose was given; time a "
+            "keyframe at 95 %, of the last 50 and of the first; how long at 95 % a "
+            "keyframe takes from its image to the live plan, "
             f"by the clock.\n\n{table(heads, rows)}"
         )
     return "\n".join(parts)
@@ -65,7 +66,7 @@ def plans(files: list[dict[str, Any]]) -> str:
     rows.append(["all", *(cell for counts in sums.values() for cell in (_found(counts), "–"))])
     heads = ["walk", *(head for name in _PLANS.values() for head in (name, "mean IoU"))]
     title = (
-        "Plans of rendered walks: rooms found at IoU .5, at .7, told by the plan, and true ones; "
+        "Plans of rendered walks: rooms found at IoU .5 / at .7 of the true ones, and rooms told; "
         "scale recovered, metres by the camera height, rigidly aligned."
     )
     return f"{title}\n\n{table(heads, rows)}"
@@ -74,12 +75,13 @@ def plans(files: list[dict[str, Any]]) -> str:
 _PLANS = {
     "true_poses_true_layouts": "true poses and layouts",
     "true_layouts": "poses from the images, true layouts",
-    "images_alone": "images alone, shipped network",
+    "images_alone": "images alone",
 }
 
 
 def _found(counts: Iterable[int]) -> str:
-    return "{}, {}, {} of {}".format(*counts)
+    half, seven, told, true = counts
+    return f"{half} / {seven} of {true}, {told} told"
 
 
 def _score(rooms: dict[str, Any], iou: float) -> dict[str, Any]:
@@ -101,7 +103,7 @@ def tours(files: list[dict[str, Any]]) -> str:
             "tour", "photos", "in the largest group", "misplaced in it", "position, median",
             "90 %", "heading", "rooms of its plan", "CPU",
         ]  # fmt: skip
-        asked = "the network" if whole[0].get("layouts") == "network" else "files"
+        asked = whole[0].get("layouts", "files")
         parts.append(
             f"Photo tours with layouts from {asked}; misplaced is more than 0.5 m or 6° off with "
             "the scale fixed, errors are after a similarity; rooms found at IoU 0.5 of all true "

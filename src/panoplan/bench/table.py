@@ -29,7 +29,7 @@ def update(page: Path, folder: Path) -> bool:
             with commas, are of the tables that come between: buildings,
             methods, shapes, scale, sweeps, causes, difficulty, errors, flats, metric,
             home, misplaced, layouts, realism, exports, areas, model, runtime,
-            walks, tours, files.
+            walks, plans, tours, files.
         folder: of the benchmark files.
 
     Returns:
@@ -163,8 +163,8 @@ def _home(files: list[dict[str, Any]]) -> str:
     rows = []
     for data in of_benchmark(files, "home"):
         figures, preset = data["figures"], data["settings"]["preset"]
-        if figures.get("layouts") == "network":
-            preset += ", shipped network"
+        if figures.get("layouts", "files") != "files":
+            preset += f", {figures['layouts']}"
         for name in ("metric", "recovered"):
             f = figures[name]
             rooms, corners = f["rooms"], f["corners"]
@@ -193,7 +193,7 @@ def _home(files: list[dict[str, Any]]) -> str:
              "floor IoU", "corners", "overlap", "doors R / P", "whole walk"]  # fmt: skip
     title = (
         f"A real home (ZInD, {true} rooms split at openings): 32 photos, true poses, unaligned; "
-        "layouts of a network trained on real homes where nothing else is said."
+        "a real network's layouts where no network is named. Its own time is not in the walk's."
     )
     return f"{title}\n\n{table(heads, rows)}"
 

@@ -102,7 +102,7 @@ def measure(
     """Joins the photos of sequence folders and makes the plan of the largest group.
 
     Args:
-        folders: each with images, layouts_pred/ and trajectory_gt.tum.
+        folders: each with images, trajectory_gt.tum, and layouts_pred/ where no network is asked.
         config: settings.
         draws: so often three quarters of a tour's photos are drawn and joined, too.
         network: is asked for the layouts; None for those in the folders.
@@ -155,7 +155,7 @@ def _tour(
         }
 
     names = list(files)
-    asked = "files" if network is None else "network"
+    asked = "files" if network is None else network.spec.name
     whole = {"scene": folder.name, "layouts": asked, **joined(names)}
     count = round(_DRAWN * len(names))
     drawn = [np.random.default_rng(seed).permutation(len(names))[:count] for seed in range(draws)]

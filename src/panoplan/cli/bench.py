@@ -117,7 +117,7 @@ _ONLY = {
     "live": ("odometry",),
     "plans": ("odometry",),
 }
-"""Options that mean nothing to other benchmarks."""
+"""Switches that are refused where they mean nothing."""
 
 
 def act(options: argparse.Namespace) -> int:
@@ -125,14 +125,14 @@ def act(options: argparse.Namespace) -> int:
     from panoplan.bench.record import commit, record, to_json
 
     commit()
+    for name, where in _ONLY.items():
+        if getattr(options, name) and options.what not in where:
+            expected = " or ".join(f"bench {what}" for what in where)
+            raise InputError(f"--{name}", f"bench {options.what or ''}".strip(), expected)
     if options.what == "v1" or (options.what is None and options.dataset is not None):
         return bench_v1.act(options)
     if options.what is None:
         raise InputError("bench", "nothing to measure", "bench v1, bench accuracy … (see --help)")
-    for name, where in _ONLY.items():
-        if getattr(options, name) and options.what not in where:
-            expected = " or ".join(f"bench {what}" for what in where)
-            raise InputError(f"--{name}", f"bench {options.what}", expected)
     asked = (
         "home", "difficulty", "odometry", "tour", "layouts", "realism", "exports", "model", "table",
     )  # fmt: skip
@@ -181,7 +181,7 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
     place, jobs, trials = options.input, options.jobs, options.trials
     flats = range(options.flats)
 
-    def asked() -> OnnxLayouts | None:
+    def predicting() -> OnnxLayouts | None:
         return OnnxLayouts(options.model or SHIPPED, threads=1) if options.predict else None
 
     measures: dict[str, Callable[[], Any]] = {
@@ -189,7 +189,7 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
             flats, config, report, metric=options.metric, jobs=jobs
         ),
         "metric": lambda: metric.measure(flats, config, report, jobs=jobs),
-        "home": lambda: home.measure(place, config, asked(), report),
+        "home": lambda: home.measure(place, config, predicting(), report),
         "misplaced": lambda: (
             misplaced.measure_flats(range(trials), config, report)
             if place is None
@@ -210,7 +210,7 @@ def _measured(options: argparse.Namespace, config: Config, report: Progress) -> 
             else _scenes(place),
             config,
             options.draws,
-            asked(),
+            predicting(),
             report,
         ),
         "layouts": lambda: layouts.measure(

@@ -137,7 +137,7 @@ def stills(
         rng: of all choices.
         per_room: fewest and most photos a room.
         counts: photos of each room instead.
-        doorways: how many more photos are taken, each in a doorway or opening drawn.
+        doorways: how many more photos are taken at the end, each in a doorway or opening drawn.
         start: index of the first room; drawn where None.
         camera_height_m: nominal height; drawn from 1.4-1.7 m where None.
 
@@ -145,8 +145,11 @@ def stills(
         The tour.
 
     Raises:
-        InputError: a room cannot be reached or is too narrow to stand in.
+        InputError: a room cannot be reached or is too narrow to stand in, or there are fewer
+            doorways.
     """
+    if doorways > len(building.passages):
+        raise InputError("doorways", str(doorways), f"at most {len(building.passages)}")
     height = camera_height(rng, camera_height_m)
     first = first_room(building, rng, start)
     order = _visits(building, rng, first)
@@ -159,8 +162,7 @@ def stills(
     if doorways:
         for k in rng.permutation(len(building.passages))[:doorways]:
             passage = building.passages[k]
-            middle = passage.area.mean(axis=0)
-            places.append(np.append(middle, building.floor_m(passage.rooms[0])))
+            places.append(np.append(passage.area.mean(axis=0), building.floor_m(passage.rooms[0])))
     standing = np.array(places)
     beta = rng.uniform(-np.pi, np.pi, len(standing))
     bob = 0.005 * rng.standard_normal(len(standing))

@@ -49,12 +49,6 @@ def test_without_open_plans_most_homes_have_doors_only():
     assert sum(kind == {"door"} for kind in kinds) >= 8
 
 
-def test_a_home_is_drawn_where_no_shape_has_room_for_the_first_draw():
-    root = np.random.SeedSequence(10**7)
-    root.spawn(3)
-    assert len(draw_home(np.random.default_rng(root.spawn(3)[0])).rooms) >= 3
-
-
 def test_targets_of_a_layout_by_hand():
     spans = Spans(np.array([[10.0, 12.0]]), np.array([[510.0, 1.0]]), np.empty((0, 2)))
     floor, through = np.full(WIDTH, -0.6), np.full(WIDTH, -0.4)

@@ -10,7 +10,7 @@ from panoplan.geometry.rigid import heading_of
 from panoplan.poses.tour.features import Features
 from panoplan.poses.tour.frames import relative
 from panoplan.poses.tour.heading import quarter_difference, wall_heading, yaw_prior
-from panoplan.poses.tour.matching import Matches, placed
+from panoplan.poses.tour.matching import Matches, without_distant
 from panoplan.poses.tour.pair import Pair, Place
 from panoplan.poses.tour.room import log_surface_ranges, room_seen
 from panoplan.poses.tour.tour import join_tour
@@ -197,8 +197,8 @@ def test_what_is_far_outside_tells_no_place():
         ]
     )
     matches = Matches(angles, np.arange(1.0, 6.0))
-    assert placed(matches, room, room, TourConfig()).prior.tolist() == [3.0, 4.0, 5.0]
-    assert placed(matches, room, None, TourConfig()) is matches
+    assert without_distant(matches, room, room, TourConfig()).prior.tolist() == [3.0, 4.0, 5.0]
+    assert without_distant(matches, room, None, TourConfig()) is matches
 
 
 def test_two_photos_near_in_one_room_must_have_much_in_common():

@@ -209,7 +209,7 @@ def test_an_opening_as_high_as_its_rooms_has_their_ceiling_and_floor():
     assert flush > 0
 
 
-def test_a_bare_room_is_empty_and_white_and_the_others_are_as_usual(flat):
+def test_a_bare_room_is_empty_and_white_and_the_others_are_furnished(flat):
     usual, bare = (Scene(flat, 5, PREVIEW, furnished=1.0, bare=b) for b in (frozenset(), {0}))
     inside = [shapely.Polygon(flat.rooms[k].polygon) for k in (0, 1)]
     stands = [

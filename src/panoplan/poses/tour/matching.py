@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from panoplan.config import TourConfig
 from panoplan.geometry.nearest import mutual_nearest
 from panoplan.poses.tour.features import Features
-from panoplan.poses.tour.room import RoomSeen, looks_out
+from panoplan.poses.tour.room import RoomSeen, at_aperture
 from panoplan.types.arrays import FloatArray, IntArray
 
 
@@ -64,12 +64,14 @@ def match(a: Features, b: Features, config: TourConfig) -> Matches:
     return Matches(angles, _distinct(ratio[order]) * _sized(sizes, angles))
 
 
-def placed(matches: Matches, a: RoomSeen | None, b: RoomSeen | None, config: TourConfig) -> Matches:
+def without_distant(
+    matches: Matches, a: RoomSeen | None, b: RoomSeen | None, config: TourConfig
+) -> Matches:
     """The matches without what lies so far away that it tells no place.
 
     What is far outside has one elevation from everywhere, and a heading that tells the yaw alone:
     two rooms with windows to one side would be taken for one. What is seen at one elevation through
-    a window or a door in both panoramas is left out; on walls that may be chance.
+    a window, door or opening in both panoramas is left out, though some of it may be near.
 
     Args:
         matches: of two panoramas.
@@ -81,7 +83,7 @@ def placed(matches: Matches, a: RoomSeen | None, b: RoomSeen | None, config: Tou
         return matches
     angles = matches.angles
     same = np.abs(angles[:, 1] - angles[:, 3]) < _FAR_SIGMAS * np.deg2rad(config.match_sigma_deg)
-    far = same & looks_out(a, angles[:, 0]) & looks_out(b, angles[:, 2])
+    far = same & at_aperture(a, angles[:, 0]) & at_aperture(b, angles[:, 2])
     return Matches(angles[~far], matches.prior[~far])
 
 

@@ -89,7 +89,7 @@ def _columns(spans: FloatArray, layout: Layout) -> BoolArray:
     return inside
 
 
-def looks_out(room: RoomSeen, headings: FloatArray) -> BoolArray:
+def at_aperture(room: RoomSeen, headings: FloatArray) -> BoolArray:
     """(M,) whether the layout tells a window or a passage along headings, camera frame."""
     at = _bins(headings, room)
     return np.asarray(room.windows[at] | room.passages[at])

@@ -13,7 +13,7 @@ from panoplan.poses.tour.assembly import Atlas, Poses, assemble, merged
 from panoplan.poses.tour.features import Features, upright_features
 from panoplan.poses.tour.frames import relative
 from panoplan.poses.tour.heading import wall_heading
-from panoplan.poses.tour.matching import match, placed
+from panoplan.poses.tour.matching import match, without_distant
 from panoplan.poses.tour.pair import Pair, Place
 from panoplan.poses.tour.refinement import refined
 from panoplan.poses.tour.room import room_seen
@@ -153,7 +153,9 @@ def _atlas(
     pairs, fits, lengths = {}, {}, {}
     for done, (i, j) in enumerate(keys):
         progress(done, len(keys), "comparing photos")
-        matches = placed(match(seen[i], seen[j], config), places[i].room, places[j].room, config)
+        matches = without_distant(
+            match(seen[i], seen[j], config), places[i].room, places[j].room, config
+        )
         pair = Pair(places[i], places[j], matches, config)
         pairs[i, j] = pair
         fits[i, j] = pair.hypotheses()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass, field
 
@@ -116,7 +116,7 @@ def follow(
         for number in [n for n in waiting if n < len(names) - odometry.settings.patience]:
             del waiting[number]
     odometry.finish()
-    maps = tuple(_trajectory(names, poses) for poses in odometry.poses())
+    maps = tuple(trajectory_of_map(names, poses) for poses in odometry.poses())
     return Walked(maps, tuple(names[n] for n in odometry.lost), count - len(names))
 
 
@@ -146,7 +146,8 @@ def _extracted(
             yield job.result()
 
 
-def _trajectory(names: list[str], poses: dict[int, Pose]) -> Trajectory:
+def trajectory_of_map(names: Sequence[str], poses: Mapping[int, Pose]) -> Trajectory:
+    """The trajectory of a map: poses by the numbers of their keyframes, which have names."""
     numbers = sorted(poses)
     return Trajectory(
         tuple(names[n] for n in numbers),
