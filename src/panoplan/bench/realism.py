@@ -15,9 +15,9 @@ from panoplan.errors import InputError, MissingExtraError
 from panoplan.pipeline import Progress
 from panoplan.types.arrays import BoolArray, FloatArray
 
-LEARNT, JUDGED = 768, 192
+LEARNT, JUDGED = 256, 96
 """Panoramas that each training sees, and that all are judged on."""
-STEPS = 480
+STEPS = 160
 _PER_LEARNT_HOME, _PER_JUDGED_HOME = 8, 4
 _BATCH, _RATE, _WARM_UP, _AVERAGE = 16, 1.5e-3, 40, 0.98
 _MOST_MINUTES = 24 * 60.0
