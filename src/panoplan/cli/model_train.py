@@ -38,6 +38,14 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         metavar="CHECKPOINT",
         help="train: of an earlier run with --head-share 1, averaged with this one",
     )
+    parser.add_argument(
+        "--mixing",
+        type=float,
+        default=0.0,
+        metavar="S",
+        help="train: share of the steps with the ImageNet features whose panoramas borrow one "
+        "another's looks (0)",
+    )
     parser.add_argument("--seed", type=int, default=0, help="train: of the order (0)")
     parser.add_argument("--quiet", action="store_true", help="train, adapt: no progress")
 
@@ -52,6 +60,8 @@ def act(options: argparse.Namespace) -> int:
         raise InputError("--panoramas", str(options.panoramas), "1 to 10000000")
     if not 0 <= options.head_share <= 1:
         raise InputError("--head-share", f"{options.head_share:g}", "0 to 1")
+    if not 0 <= options.mixing <= 1:
+        raise InputError("--mixing", f"{options.mixing:g}", "0 to 1")
     try:
         import torch  # noqa: F401
     except ImportError:
@@ -71,9 +81,14 @@ def act(options: argparse.Namespace) -> int:
             featuriser.shard(options.input, number)
     say: Callable[[str], None] = _silent if options.quiet else print
     share = options.head_share
-    for plan, part in ((head_plan, share), (tuned_plan, 1 - share)):
-        if part > 0:
-            train(options.input, options.input, plan(options.minutes * part, options.seed), say)
+    minutes, seed = options.minutes, options.seed
+    plans = (
+        head_plan(minutes * share, seed, options.mixing),
+        tuned_plan(minutes * (1 - share), seed),
+    )
+    for plan in plans:
+        if plan.minutes > 0:
+            train(options.input, options.input, plan, say)
     finish(options.input, options.input / CHECKPOINT, options.output, say, beside=options.beside)
     print(options.output)
     return 0

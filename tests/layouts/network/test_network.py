@@ -131,6 +131,21 @@ def test_training_learns_and_goes_on(tmp_path, monkeypatch, network, trunk_rate)
     assert moved == (trunk_rate > 0)
 
 
+def test_mixing_moves_looks_and_leaves_what_is_seen():
+    features = [torch.randn(6, 5, 4, 8) * 3 + torch.arange(6.0)[:, None, None, None]]
+    (told,) = training.mixed(features, np.random.default_rng(1))
+
+    def looks(x):
+        return x.mean((2, 3), keepdim=True), x.std((2, 3), keepdim=True)
+
+    (mean, spread), (new_mean, new_spread) = looks(features[0]), looks(told)
+    seen, same = (features[0] - mean) / spread, (told - new_mean) / new_spread
+    torch.testing.assert_close(seen, same, atol=1e-2, rtol=1e-2)
+    assert (new_mean - mean).abs().max() > 0.5
+    assert new_mean.min() >= mean.min() - 1e-3
+    assert new_mean.max() <= mean.max() + 1e-3
+
+
 def test_the_exported_file_says_the_same_and_what_it_is(tmp_path, network):
     path = tmp_path / "layout.onnx"
     export(network, path, np.full(len(KNOTS_CH), np.log(2.0)))

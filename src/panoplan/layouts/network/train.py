@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -45,6 +45,8 @@ class Plan:
         seed: of a fresh head and of the order of the panoramas.
         warm_up: steps over which the learning rate rises.
         shards: numbers of those that are drawn; None for all that there are.
+        mixing: share of the steps whose panoramas borrow one another's looks, 0-1; needs a trunk
+            that is left as it is.
     """
 
     minutes: float
@@ -56,11 +58,12 @@ class Plan:
     seed: int = 0
     warm_up: int = 200
     shards: tuple[int, ...] | None = None
+    mixing: float = 0.0
 
 
-def head_plan(minutes: float, seed: int = 0) -> Plan:
+def head_plan(minutes: float, seed: int = 0, mixing: float = 0.0) -> Plan:
     """A first run: the trunk stays as it is."""
-    return Plan(minutes, seed=seed)
+    return Plan(minutes, seed=seed, mixing=mixing)
 
 
 def tuned_plan(minutes: float, seed: int = 0) -> Plan:
@@ -107,6 +110,9 @@ def train(folder: Path, out: Path, plan: Plan, told: Callable[[str], None]) -> N
                 group["lr"] = (
                     peak * min(1, (step + 1) / plan.warm_up) * 0.5 * (1 + np.cos(np.pi * share))
                 )
+            if plan.mixing > 0 and rng.random() < plan.mixing:
+                shallow, middle, deep = mixed(batch[:3], rng)
+                batch = (shallow, middle, deep, batch[3])
             loss = _loss(network, batch, tuned=tuned)
             optimiser.zero_grad(set_to_none=True)
             loss.backward()
@@ -223,6 +229,32 @@ def answer_of(network: LayoutNetwork, features: list[Tensor], *, tuned: bool) ->
         parts = network.trunk.above(features[0]) if tuned else features
         answer: Tensor = network.head(*parts)
     return answer.float()
+
+
+def mixed(features: Sequence[Tensor], rng: np.random.Generator) -> list[Tensor]:
+    """Features of panoramas that borrow the looks of others of their batch.
+
+    Args:
+        features: (B, C, H, W) at each stride.
+        rng: of who borrows from whom, and how much.
+
+    Returns:
+        The same, mean and standard deviation of each channel moved towards another panorama's.
+
+    Source: Zhou et al., Domain generalization with MixStyle, 2021.
+    """
+    count = len(features[0])
+    other = torch.from_numpy(rng.permutation(count))
+    own = torch.from_numpy(rng.beta(_MIXED, _MIXED, (count, 1, 1, 1)).astype(np.float32))
+    told = []
+    for x in features:
+        mean, spread = x.mean((2, 3), keepdim=True), x.std((2, 3), keepdim=True) + _LEAST_SPREAD
+        towards = own * mean + (1 - own) * mean[other], own * spread + (1 - own) * spread[other]
+        told.append((x - mean) / spread * towards[1] + towards[0])
+    return told
+
+
+_MIXED, _LEAST_SPREAD = 0.3, 1e-4
 
 
 def _loss(network: LayoutNetwork, batch: Batch, *, tuned: bool) -> Tensor:
