@@ -45,8 +45,8 @@ class Plan:
         seed: of a fresh head and of the order of the panoramas.
         warm_up: steps over which the learning rate rises.
         shards: numbers of those that are drawn; None for all that there are.
-        mixing: share of the steps whose panoramas borrow one another's looks, 0-1; needs a trunk
-            that is left as it is.
+        mixing: share of the steps whose panoramas borrow one another's looks, 0-1; where the trunk
+            is tuned, at stride 8 only.
     """
 
     minutes: float
